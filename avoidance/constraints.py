@@ -1,0 +1,179 @@
+"""The constraints on a new waypoint (Eqs. 7-12): by how much each candidate breaks them, in metres."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from avoidance.flown import turn_angle
+from avoidance.geometry import segments_clearance
+from avoidance.types import Floats
+
+
+def safe_waypoint(points: Floats, centres: Floats, required: Floats) -> Floats:
+    """g1: the waypoint keeps `required` from every obstacle.
+
+    Parameters
+    ----------
+    points : array, shape (n, 2)
+        Candidates [m].
+    centres : array, shape (d, 2)
+        Obstacles [m].
+    required : array, shape (d,)
+        RS + tolerance of each [m].
+
+    Returns
+    -------
+    array, shape (n,)
+        Largest shortfall [m]; 0 where the constraint is met.
+
+    Notes
+    -----
+    Eq. (7).
+    """
+    if not len(centres):
+        return np.zeros(len(points))
+    distance = np.hypot(
+        points[:, None, 0] - centres[None, :, 0], points[:, None, 1] - centres[None, :, 1]
+    )
+    return np.asarray(np.maximum((required - distance).max(axis=1), 0.0))
+
+
+def search_space(points: Floats, members: Floats, limit: float) -> Floats:
+    """g2: the waypoint lies within `limit` of the nearest member of the cluster avoided (Eq. 8).
+
+    Differs from the paper: E12, its own results break the limit measured from the obstacle itself.
+
+    Parameters
+    ----------
+    points : array, shape (n, 2)
+        Candidates [m].
+    members : array, shape (c, 2)
+        Obstacles of the cluster [m].
+    limit : float
+        searchspaceLimit [m].
+
+    Returns
+    -------
+    array, shape (n,)
+        Excess [m].
+    """
+    if not len(members):
+        return np.zeros(len(points))
+    distance = np.hypot(
+        points[:, None, 0] - members[None, :, 0], points[:, None, 1] - members[None, :, 1]
+    )
+    return np.asarray(np.maximum(distance.min(axis=1) - limit, 0.0))
+
+
+def feasible_segments(
+    starts: Floats, ends: Floats, extra: Floats, centres: Floats, required: Floats
+) -> Floats:
+    """g3: every segment of the flown curve keeps `required` (+ `extra`) from every obstacle.
+
+    Parameters
+    ----------
+    starts, ends : array, shape (n, m, 2)
+        Segments of each candidate's flown curve, see `avoidance.flown` [m].
+    extra : array, shape (n, m)
+        Additional room of each segment [m].
+    centres : array, shape (d, 2)
+        Obstacles [m].
+    required : array, shape (d,)
+        RS + margin of each [m].
+
+    Returns
+    -------
+    array, shape (n,)
+        Largest shortfall [m].
+
+    Notes
+    -----
+    Eqs. (9)-(10) and (22)-(26) in the form "distance of a segment from a point", which is the same test
+    with 0 <= t <= 1. Differs from the paper: E17 (infinite line) and E18 (both new segments, every
+    obstacle).
+    """
+    if not len(centres):
+        return np.zeros(len(starts))
+    count, pieces = extra.shape
+    distance = segments_clearance(starts.reshape(-1, 2), ends.reshape(-1, 2), centres)
+    shortfall = (required[None] + extra.reshape(-1, 1) - distance).max(axis=1)
+    return np.asarray(np.maximum(shortfall.reshape(count, pieces).max(axis=1), 0.0))
+
+
+def turning_angle(
+    points: Floats, start: tuple[float, float], target: tuple[float, float], limit: float
+) -> Floats:
+    """g4 as printed: the heading change at the waypoint stays within `limit` (Eqs. 11-12).
+
+    Differs from the paper: E16, the denominator of Eq. (11) must be the product of the norms.
+
+    Parameters
+    ----------
+    points : array, shape (n, 2)
+        Candidates [m].
+    start, target : (float, float)
+        Ends of the detour [m].
+    limit : float
+        MaxBankAngle [rad].
+
+    Returns
+    -------
+    array, shape (n,)
+        Excess, as an arc of one kilometre radius [m].
+    """
+    incoming, outgoing, _, _ = _units(points, start, target)
+    return np.maximum(turn_angle(incoming, outgoing) - limit, 0.0) * 1000.0
+
+
+def flyable_turn(
+    points: Floats,
+    start: tuple[float, float],
+    target: tuple[float, float],
+    course: float | None,
+    turn_radius: float,
+) -> Floats:
+    """g4: the turns on to the first segment and at the waypoint fit into the adjoining segments.
+
+    R tan(dchi/2) must not exceed the shorter of them.
+
+    Parameters
+    ----------
+    points : array, shape (n, 2)
+        Candidates [m].
+    start, target : (float, float)
+        Ends of the detour [m].
+    course : float or None
+        Direction of travel at the start [rad].
+    turn_radius : float
+        R = V²/(g tan phi) [m], Eq. (13).
+
+    Returns
+    -------
+    array, shape (n,)
+        Shortfall [m].
+
+    Notes
+    -----
+    Replaces Eqs. (11)-(12) in the `default` preset. Differs from the paper: E16, a heading change is
+    compared there with a bank angle.
+    """
+    incoming, outgoing, first, second = _units(points, start, target)
+    need = turn_radius * np.tan(0.5 * np.minimum(turn_angle(incoming, outgoing), 0.99 * math.pi))
+    shortfall = need - np.minimum(first, second)
+    if course is not None:
+        ahead = np.broadcast_to(np.array([math.cos(course), math.sin(course)]), incoming.shape)
+        begin = turn_radius * np.tan(0.5 * np.minimum(turn_angle(ahead, incoming), 0.99 * math.pi))
+        shortfall = np.maximum(shortfall, begin - first)
+    return np.maximum(shortfall, 0.0)
+
+
+def _units(
+    points: Floats, start: tuple[float, float], target: tuple[float, float]
+) -> tuple[Floats, Floats, Floats, Floats]:
+    incoming = points - np.array(start)
+    outgoing = np.array(target) - points
+    first = np.maximum(np.hypot(incoming[:, 0], incoming[:, 1]), 1e-9)
+    second = np.maximum(np.hypot(outgoing[:, 0], outgoing[:, 1]), 1e-9)
+    return incoming / first[:, None], outgoing / second[:, None], first, second

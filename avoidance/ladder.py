@@ -1,0 +1,100 @@
+"""From a blocked leg to a way round it: one waypoint if there is one, else the exact planner's route.
+
+Constraints are given up in a fixed, reported order: the turn limit (g4), the search limit (g2), the
+tolerance (g1); never RS. Then comes a route of several waypoints, then none: the caller must hold.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from avoidance.constraints import feasible_segments
+from avoidance.flown import flown_segments
+from avoidance.problem import WaypointProblem
+from avoidance.search import search_waypoint
+from avoidance.tangent_graph import shortest_path
+from avoidance.types import Floats, Rung, Search
+
+RUNGS: tuple[tuple[Rung, frozenset[str]], ...] = (
+    (Rung.WAYPOINT, frozenset()),
+    (Rung.WIDE_TURN, frozenset({"g4"})),
+    (Rung.FAR, frozenset({"g4", "g2"})),
+    (Rung.CLOSE, frozenset({"g4", "g2", "g1"})),
+)
+"""Single-waypoint rungs and the constraints given up on each."""
+
+LARGEST_CORNER = math.radians(40.0)
+"""Heading change of a corner of an exact route [rad]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Plan:
+    """A way round."""
+
+    rung: Rung
+    """How far down the ladder it was found."""
+    waypoints: tuple[tuple[float, float], ...]
+    """New waypoints in order, north and east [m]."""
+    search: Search
+    """The waypoint search made first (with every constraint), or the one that found the waypoint."""
+
+
+def way_round(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None:
+    """The first rung on which there is a way, or None.
+
+    Parameters
+    ----------
+    problem : WaypointProblem
+        The search with every constraint.
+    rng : numpy.random.Generator
+        The planner's randomness.
+    """
+    search = None
+    for rung, relaxed in RUNGS:
+        search = search_waypoint(replace(problem, relaxed=relaxed), rng)
+        if search.found is not None:
+            return Plan(rung, (search.found,), search)
+    route = exact_route(problem)
+    if route is None or search is None:
+        return None
+    return Plan(Rung.ROUTE, route, search)
+
+
+def exact_route(problem: WaypointProblem) -> tuple[tuple[float, float], ...] | None:
+    """Waypoints of the shortest path round everything known that can be flown, or None.
+
+    The circles are widened step by step until the flown curve, with its turns, is clear of those that must
+    be kept; intruders are not considered.
+    """
+    keep = problem.keep
+    free_start = _distance(problem.centres, problem.start) - 0.5
+    free_target = _distance(problem.centres, problem.target) - 0.5
+    room = 2.0 * problem.performance.turn_radius
+    for pad in (1.0, 0.25 * room, 0.5 * room, room, 2.0 * room):
+        radii = np.minimum(np.minimum(keep + pad, free_start), free_target)
+        path = shortest_path(problem.start, problem.target, problem.centres, np.maximum(radii, 0.0))
+        if path is None:
+            return None
+        corners = path.polyline(LARGEST_CORNER)
+        if _flyable(problem, corners):
+            inner = corners[1:-1]
+            return tuple((float(point[0]), float(point[1])) for point in inner)
+    return None
+
+
+def _flyable(problem: WaypointProblem, corners: Floats) -> bool:
+    if problem.before is not None:
+        corners = np.concatenate([np.array([problem.before]), corners])
+    starts, ends, extra = flown_segments(corners[None], problem.course, problem.performance)
+    skip = 0 if problem.before is None else 1
+    shortfall = feasible_segments(
+        starts[:, skip:], ends[:, skip:], extra[:, skip:], problem.centres, problem.keep - 0.5
+    )
+    return bool(shortfall[0] <= 0.0)
+
+
+def _distance(centres: Floats, point: tuple[float, float]) -> Floats:
+    return np.hypot(centres[:, 0] - point[0], centres[:, 1] - point[1])

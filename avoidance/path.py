@@ -1,0 +1,143 @@
+"""A path among discs: straight segments and arcs, and the waypoints that fly it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from avoidance.geometry import Point, segment_point_distance, segments_clearance
+from avoidance.types import Floats, Ints
+
+TOUCH = 1e-9
+"""Part of a radius by which a segment may enter a disc and still count as touching it."""
+MOST_CORNERS = 4096
+"""Corners that one arc may be given to keep it clear of its neighbours."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Path:
+    """A path for a point among discs: segments that touch discs, joined by arcs on them."""
+
+    length: float
+    """Length [m]."""
+    points: Floats
+    """Start, ends of segments and arcs, goal (north, east) [m], shape (k, 2)."""
+    discs: Ints
+    """Disc on whose circle points i and i+1 are joined, -1 for a straight segment, shape (k-1,)."""
+    sweeps: Floats
+    """Angle turned through between points i and i+1 [rad], clockwise positive, 0 on segments, (k-1,)."""
+    centres: Floats
+    """Centres of all the discs (north, east) [m], shape (n, 2)."""
+    radii: Floats
+    """Radii of all the discs [m], shape (n,)."""
+
+    def clearance(self, centres: Floats) -> Floats:
+        """Least distance between the path and each of some points.
+
+        Parameters
+        ----------
+        centres : Floats
+            Points (north, east) [m], shape (m, 2).
+
+        Returns
+        -------
+        Floats
+            Distances [m], shape (m,), in closed form.
+        """
+        straight = np.flatnonzero(self.discs < 0)
+        least = np.full(len(centres), math.inf)
+        if len(straight):
+            distances = segments_clearance(self.points[straight], self.points[straight + 1], centres)
+            least = distances.min(axis=0)
+        for k in np.flatnonzero(self.discs >= 0).tolist():
+            least = np.minimum(least, self._arc_clearance(k, centres))
+        return least
+
+    def polyline(self, max_turn: float = math.radians(30.0)) -> Floats:
+        """Waypoints that fly the path, never inside a disc that the path keeps out of.
+
+        Parameters
+        ----------
+        max_turn : float
+            Largest change of course at a corner put in for an arc, in (0, π/2] [rad].
+
+        Returns
+        -------
+        Floats
+            Start, corners, goal (north, east) [m], shape (m, 2). Each arc is replaced by corners outside
+            its disc, where the tangents of its parts meet; it is split until no corner turns by more
+            than `max_turn` and until no segment enters a neighbouring disc (by more than 1e-9 of its
+            radius; an arc squeezed between two discs that touch stops at 4096 corners).
+
+        Raises
+        ------
+        ValueError
+            If `max_turn` is out of range.
+        """
+        if not 0.0 < max_turn <= math.pi / 2:
+            raise ValueError(f"max_turn must lie in (0, π/2] rad: {max_turn}")
+        corners: list[Floats] = [self.points[:1]]
+        for k, disc in enumerate(self.discs.tolist()):
+            if disc >= 0:
+                corners.append(self._corners(k, max_turn))
+            elif k > 0 and self.discs[k - 1] < 0:
+                corners.append(self.points[k : k + 1])
+        corners.append(self.points[-1:])
+        return np.concatenate(corners)
+
+    def _bearing(self, k: int) -> float:
+        """Angle of point k seen from the centre of the disc of piece k [rad]."""
+        north, east = self.points[k] - self.centres[self.discs[k]]
+        return math.atan2(float(east), float(north))
+
+    def _arc_clearance(self, k: int, centres: Floats) -> Floats:
+        """Least distance between arc k and each of some points [m]."""
+        disc, sweep = int(self.discs[k]), float(self.sweeps[k])
+        away = centres - self.centres[disc]
+        turned = np.mod(
+            math.copysign(1.0, sweep) * (np.arctan2(away[:, 1], away[:, 0]) - self._bearing(k)), math.tau
+        )
+        ends = self.points[k : k + 2]
+        to_ends = np.hypot(centres[:, 0, None] - ends[:, 0], centres[:, 1, None] - ends[:, 1]).min(axis=1)
+        to_arc = np.abs(np.hypot(away[:, 0], away[:, 1]) - self.radii[disc])
+        return np.asarray(np.where(turned <= abs(sweep), to_arc, to_ends))
+
+    def _corners(self, k: int, max_turn: float) -> Floats:
+        """Corners outside the disc that replace arc k, shape (c, 2) [m]."""
+        disc, sweep = int(self.discs[k]), float(self.sweeps[k])
+        others = np.arange(len(self.radii)) != disc
+        limits = self.radii[others] * (1.0 - TOUCH)
+        parts = max(1, math.ceil(abs(sweep) / max_turn - 1e-9))
+        while True:
+            angles = self._bearing(k) + sweep / parts * (np.arange(parts) + 0.5)
+            reach = float(self.radii[disc]) / math.cos(sweep / parts / 2.0)
+            corners = self.centres[disc] + reach * np.column_stack([np.cos(angles), np.sin(angles)])
+            chain = np.concatenate([self.points[k : k + 1], corners, self.points[k + 1 : k + 2]])
+            free = segments_clearance(chain[:-1], chain[1:], self.centres[others]) >= limits
+            if parts >= MOST_CORNERS or bool(free.all()):
+                return np.asarray(corners)
+            parts *= 2
+
+
+def clear(a: Point, b: Point, centres: Floats, radii: Floats, tolerance: float = TOUCH) -> bool:
+    """Whether a segment keeps out of every disc; touching one is allowed.
+
+    Parameters
+    ----------
+    a, b : Point
+        Ends of the segment (north, east) [m].
+    centres : Floats
+        Centres (north, east) [m], shape (n, 2).
+    radii : Floats
+        Radii [m], shape (n,).
+    tolerance : float
+        Part of a radius by which the segment may come closer.
+
+    Returns
+    -------
+    bool
+        True if no disc is entered.
+    """
+    return bool((segment_point_distance(a, b, centres) >= radii * (1.0 - tolerance)).all())

@@ -1,0 +1,197 @@
+"""Is the remaining route clear? If not, which leg is blocked first, and by what (Algorithms 5 to 7)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from avoidance.flown import flown_segments
+from avoidance.geometry import segments_clearance
+from avoidance.known import Known
+from avoidance.prediction import route_separation
+from avoidance.problem import Intruders
+from avoidance.types import Floats, Ints, Ownship, Performance, Route, Threat
+
+INTRUDER_HORIZON = 900.0
+"""Intruders are extrapolated no further than this [s]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Blocked:
+    """The first leg of a route that cannot be flown."""
+
+    threat: Threat
+    """What blocks it, for the record."""
+    leg: int
+    """Index of the waypoint at its end."""
+    blockers: Ints
+    """Indices into `Known` of the obstacles that cut it, nearest first; empty for an intruder."""
+
+
+def remaining_points(own: Ownship, route: Route, tracking_error: float, capture_distance: float) -> Floats:
+    """The route as it will be flown from here, shape (1, k, 2) [m].
+
+    While the vehicle is off its leg it flies back on to it, so a point on the leg one capture distance
+    ahead is put between; the number of such points (0 or 1) is k - 1 - len(route.waypoints).
+    """
+    points = [(own.north, own.east)]
+    first, origin = route.waypoints[0], route.origin
+    north, east = first.north - origin.north, first.east - origin.east
+    length = math.hypot(north, east)
+    if length > 1.0:
+        north, east = north / length, east / length
+        along = (own.north - origin.north) * north + (own.east - origin.east) * east
+        across = (own.east - origin.east) * north - (own.north - origin.north) * east
+        ahead = along + capture_distance
+        if abs(across) > tracking_error and 0.0 < ahead < length:
+            points.append((origin.north + ahead * north, origin.east + ahead * east))
+    points += [(waypoint.north, waypoint.east) for waypoint in route.waypoints]
+    return np.array(points)[None]
+
+
+def first_blocked_leg(
+    own: Ownship, route: Route, known: Known, performance: Performance, hysteresis: float
+) -> Blocked | None:
+    """The first leg of the remaining route that something stationary cuts, or None.
+
+    Parameters
+    ----------
+    own : Ownship
+        Where the vehicle is.
+    route : Route
+        What it is to fly.
+    known : Known
+        Obstacles.
+    performance : Performance
+        How it turns and follows legs.
+    hysteresis : float
+        A route is left alone until it comes this much nearer than `known.keep` [m].
+
+    Returns
+    -------
+    Blocked or None
+
+    Notes
+    -----
+    Algorithms 5 and 6, Eqs. (22)-(26), on the curve that will be flown. Differs from the paper: E17, a
+    segment is tested and not an infinite line, which makes Algorithm 5 superfluous.
+    """
+    if not len(known.keep) or not route.waypoints:
+        return None
+    points = remaining_points(own, route, performance.tracking_error, performance.capture_distance)
+    inserted = points.shape[1] - 1 - len(route.waypoints)
+    starts, ends, extra = flown_segments(points, own.course, performance)
+    distance = segments_clearance(starts[0], ends[0], known.centres)
+    required = known.keep[None] - hysteresis + extra[0][:, None]
+    cut = distance < required
+    if not cut.any():
+        return None
+    legs = _leg_of_segment(points.shape[1], inserted)
+    leg = int(legs[cut.any(axis=1)].min())
+    mine = (legs == leg) & cut.any(axis=1)
+    blockers = np.flatnonzero(cut[mine].any(axis=0))
+    begin = points[0, 0] if leg == 0 else points[0, leg + inserted]
+    end = points[0, leg + inserted + 1]
+    entries = _entry_distances(begin, end, known.centres[blockers], known.keep[blockers])
+    order = np.argsort(entries, kind="stable")
+    blockers = blockers[order]
+    flown = _length(points[0, : leg + inserted + 1]) if leg else 0.0
+    nearest = int(blockers[0])
+    ahead = flown + float(entries[order[0]])
+    threat = Threat(
+        ids=tuple(int(i) for i in known.ids[blockers]),
+        leg=leg,
+        distance=ahead,
+        time=ahead / max(own.ground_speed, 1.0),
+        clearance=float(distance[mine][:, nearest].min()),
+        required=float(known.keep[nearest]),
+    )
+    return Blocked(threat, leg, blockers)
+
+
+def first_conflict(
+    own: Ownship, route: Route, known: Known, performance: Performance, share: float
+) -> Blocked | None:
+    """The first leg on which an intruder comes closer than `share` of what must be kept, or None.
+
+    Notes
+    -----
+    Algorithm 7. Differs from the paper: a shrinking distance alone proves nothing; the closest point of
+    approach along the whole route is taken.
+    """
+    intruders = known.intruders
+    if not len(intruders.required) or not route.waypoints:
+        return None
+    points = np.array([(own.north, own.east), *((w.north, w.east) for w in route.waypoints)])[None]
+    speed = max(own.ground_speed, 1.0)
+    worst: Blocked | None = None
+    for last in range(2, points.shape[1] + 1):
+        separation = route_separation(
+            points[:, :last], speed, intruders.positions, intruders.velocities, INTRUDER_HORIZON
+        )[0]
+        close = np.flatnonzero(separation < share * intruders.required)
+        if len(close):
+            order = close[np.argsort(separation[close], kind="stable")]
+            nearest = int(order[0])
+            time, distance = _closest_approach(speed, points[0, :last], intruders, nearest)
+            threat = Threat(
+                ids=tuple(int(i) for i in known.intruder_ids[order]),
+                leg=last - 2,
+                distance=distance,
+                time=time,
+                clearance=float(separation[nearest]),
+                required=float(intruders.required[nearest]),
+                moving=True,
+            )
+            worst = Blocked(threat, last - 2, np.empty(0, dtype=np.int64))
+            break
+        if _length(points[0, :last]) > speed * INTRUDER_HORIZON:
+            break
+    return worst
+
+
+def _leg_of_segment(corners: int, inserted: int) -> Ints:
+    """Which leg each of the segments of `flown_segments` belongs to."""
+    legs = np.arange(corners - 1)
+    bends = np.arange(1, corners - 1)
+    owner = np.concatenate([legs, bends, [0, 0]]) - inserted
+    return np.asarray(np.maximum(owner, 0))
+
+
+def _entry_distances(begin: Floats, end: Floats, centres: Floats, radii: Floats) -> Floats:
+    """Distance along a segment to where it enters each circle, or to the point nearest to it [m]."""
+    along = end - begin
+    length = max(float(np.hypot(*along)), 1e-9)
+    unit = along / length
+    offset = centres - begin
+    forward = offset @ unit
+    across = unit[0] * offset[:, 1] - unit[1] * offset[:, 0]
+    half = np.sqrt(np.maximum(radii**2 - across**2, 0.0))
+    return np.clip(forward - half, 0.0, length)
+
+
+def _closest_approach(
+    speed: float, points: Floats, intruders: Intruders, index: int
+) -> tuple[float, float]:
+    """Time until, and own distance flown to, the closest point of approach to one intruder."""
+    position, velocity = intruders.positions[index], intruders.velocities[index]
+    clock, best, when = 0.0, math.inf, 0.0
+    for begin, end in zip(points[:-1], points[1:], strict=True):
+        leg = float(np.hypot(*(end - begin)))
+        if leg < 1e-9:
+            continue
+        closing = speed * (end - begin) / leg - velocity
+        relative = begin - position - velocity * clock
+        moment = float(np.clip(-(relative @ closing) / max(float(closing @ closing), 1e-12), 0.0, leg / speed))
+        miss = float(np.hypot(*(relative + closing * moment)))
+        if miss < best:
+            best, when = miss, clock + moment
+        clock += leg / speed
+    return when, when * speed
+
+
+def _length(points: Floats) -> float:
+    steps = np.diff(points, axis=0)
+    return float(np.hypot(steps[:, 0], steps[:, 1]).sum())

@@ -1,0 +1,89 @@
+"""Run a planner on one waypoint search."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from avoidance.parameters import SwarmSettings
+from avoidance.problem import INFEASIBLE, WaypointProblem
+from avoidance.pso import Pso
+from avoidance.seeds import rule_seeds, sphere_seeds
+from avoidance.types import Floats, Search
+
+
+class Optimiser(Protocol):
+    """A planner of single waypoints: it proposes points, is told their costs, and knows its best.
+
+    Built with (seeds of shape (m, 2), settings, random generator). Infeasible points are told costs above
+    every feasible one's, growing with their violation, so that all planners order candidates alike.
+    """
+
+    def __init__(self, seeds: Floats, settings: SwarmSettings, rng: np.random.Generator) -> None: ...
+
+    @property
+    def best(self) -> Floats: ...
+    @property
+    def best_cost(self) -> float: ...
+    @property
+    def finished(self) -> bool: ...
+    def ask(self) -> Floats: ...
+    def tell(self, costs: Floats) -> None: ...
+
+
+OPTIMISERS: dict[str, type[Optimiser]] = {"pso": Pso}
+"""Planners by name."""
+
+
+def search_waypoint(problem: WaypointProblem, rng: np.random.Generator) -> Search:
+    """Find a waypoint with the planner that the problem's parameters name.
+
+    Parameters
+    ----------
+    problem : WaypointProblem
+        What is asked.
+    rng : numpy.random.Generator
+        The planner's randomness.
+
+    Returns
+    -------
+    Search
+        `found` is None if no candidate met every constraint.
+
+    Notes
+    -----
+    Algorithm 10.
+    """
+    parameters = problem.parameters
+    settings = parameters.swarm
+    evaluations = 0
+    if parameters.rule_seeds:
+        seeds, evaluations = rule_seeds(problem, settings.particles)
+    else:
+        seeds = sphere_seeds(problem, settings.particles, rng)
+    optimiser = OPTIMISERS[parameters.optimiser](seeds, settings, rng)
+    iterations = 0
+    first_feasible: int | None = None
+    while not optimiser.finished:
+        points = optimiser.ask()
+        optimiser.tell(problem.rank(points))
+        evaluations += len(points)
+        iterations += 1
+        if first_feasible is None and optimiser.best_cost < INFEASIBLE:
+            first_feasible = iterations
+    feasible = optimiser.best_cost < INFEASIBLE
+    best = (float(optimiser.best[0]), float(optimiser.best[1]))
+    return Search(
+        start=problem.start,
+        target=problem.target,
+        centres=problem.centres,
+        radii=problem.keep,
+        planner=parameters.optimiser,
+        found=best if feasible else None,
+        cost=optimiser.best_cost if feasible else float("nan"),
+        iterations=iterations,
+        evaluations=evaluations,
+        first_feasible=first_feasible,
+        problem=problem,
+    )

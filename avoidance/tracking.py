@@ -1,0 +1,359 @@
+"""From radar scans to tracks: what is known, where it is, and whether it moves (Algorithms 2 and 3)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from avoidance.parameters import Parameters
+from avoidance.types import Bools, Floats, Ints, Ownship, RadarScan
+
+FLOOR = 0.5
+"""Smallest standard deviation believed of a measured position [m]."""
+FIRST_SPEED = 30.0
+"""Standard deviation of the speed of something seen once [m/s]."""
+MANOEUVRE = 1.0
+"""Power density of unknown accelerations [m²/s³]."""
+GATE = 5.0
+"""A contact belongs to a track within this many standard deviations ..."""
+GATE_FLOOR = 30.0
+"""... or this many metres."""
+CONFIRMING_HITS = 2
+"""A track is believed from this many sightings on."""
+TENTATIVE_MISSES = 3
+"""An unconfirmed track dies after this many scans without a sighting."""
+COASTING_TIME = 15.0
+"""A moving track dies when it has not been seen for this long [s]."""
+RESTING_TIME = 5.0
+"""What stands still and has not been seen for this long is expected where it was [s]."""
+MOVING_SPEED, STILL_SPEED = 2.0, 1.0
+"""Speeds above the first, and significant, move; below the second they stand [m/s]."""
+MOVING_SIGMAS, STILL_SIGMAS = 4.0, 2.0
+"""The same in standard deviations of the estimated speed."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Picture:
+    """Everything known of the obstacles after a scan; arrays of one row per track."""
+
+    ids: Ints
+    """Identity the radar last gave, shape (n,)."""
+    positions: Floats
+    """North, east, altitude [m], shape (n, 3)."""
+    velocities: Floats
+    """North, east over ground [m/s], 0 for what stands still, shape (n, 2)."""
+    radii: Floats
+    """Safety radius RS [m], shape (n,)."""
+    sigma: Floats
+    """Standard deviation of the horizontal position [m], shape (n,)."""
+    moving: Bools
+    """True for what moves, shape (n,)."""
+    confirmed: Bools
+    """Seen often enough to be believed, shape (n,)."""
+    version: int
+    """Changes whenever what stands still has changed: a new, lost or shifted obstacle."""
+
+    @property
+    def size(self) -> int:
+        """How many tracks there are."""
+        return len(self.ids)
+
+
+class Tracker:
+    """Contacts in, tracks out.
+
+    Parameters
+    ----------
+    parameters : Parameters
+        Default safety radius, memory, and how accurate the radar is specified to be.
+
+    Notes
+    -----
+    Nearest-neighbour association inside a gate, with the radar's identity as a hint; a constant-velocity
+    Kalman filter per track with equal variance on both axes (Bar-Shalom, Li & Kirubarajan 2001, 6.3),
+    beside it the running mean for what stands still. Algorithm 2. Differs from the paper: E31, its range
+    test misses receding, crossing and same-course traffic; here a track moves when its estimated speed is
+    significant. With `memory` off the picture holds the current scan only, and Algorithm 2 decides as
+    printed.
+    """
+
+    def __init__(self, parameters: Parameters) -> None:
+        self._parameters = parameters
+        self._time = 0.0
+        self._version = 0
+        self._last_ids: Ints = np.empty(0, dtype=np.int64)
+        self._last_rows: Ints = np.empty(0, dtype=np.int64)
+        self._last_own: tuple[float, float] | None = None
+        self._last_range: dict[int, float] = {}
+        self._ids = np.empty(0, dtype=np.int64)
+        self._position = np.empty((0, 3))  # Kalman estimate, and its velocity
+        self._velocity = np.empty((0, 2))
+        self._mean = np.empty((0, 3))  # running mean, for what stands still
+        self._weight = np.empty(0)
+        self._p11 = np.empty(0)
+        self._p12 = np.empty(0)
+        self._p22 = np.empty(0)
+        self._radius = np.empty(0)
+        self._hits = np.empty(0, dtype=np.int64)
+        self._misses = np.empty(0, dtype=np.int64)
+        self._seen = np.empty(0)
+        self._moving = np.empty(0, dtype=np.bool_)
+        self._picture: Picture | None = None
+
+    def update(self, scan: RadarScan, own: Ownship) -> Picture:
+        """Take one scan and return the picture after it.
+
+        Contacts whose position is not finite are refused; the rest of the scan is used.
+        """
+        scan = _usable(scan)
+        if not self._parameters.memory:
+            return self._current_scan(scan, own)
+        step = scan.time - self._time
+        self._time = scan.time
+        if self._picture is not None and self._undisturbed(scan):
+            self._seen[self._last_rows] = scan.time
+            return self._picture
+        self._predict(step)
+        rows = self._associate(scan, own)
+        self._correct(scan, rows, own)
+        self._classify()
+        self._forget(rows)
+        return self._publish()
+
+    def _undisturbed(self, scan: RadarScan) -> bool:
+        """True if the scan repeats exactly what is known: the same still obstacles at the same places."""
+        rows = self._last_rows
+        return (
+            len(rows) == len(scan.ids)
+            and np.array_equal(scan.ids, self._last_ids)
+            and not self._moving.any()
+            and bool((self._hits >= CONFIRMING_HITS).all())
+            and np.array_equal(scan.positions, self._mean[rows])
+        )
+
+    def _predict(self, step: float) -> None:
+        self._position[:, :2] += step * self._velocity
+        self._p11 += step * (2.0 * self._p12 + step * self._p22) + MANOEUVRE * step**3 / 3.0
+        self._p12 += step * self._p22 + MANOEUVRE * step**2 / 2.0
+        self._p22 += MANOEUVRE * step
+
+    def _noise(self, positions: Floats, own: Ownship) -> Floats:
+        """Variance of each measured position on one axis [m²]."""
+        p = self._parameters
+        distance = np.hypot(positions[:, 0] - own.north, positions[:, 1] - own.east)
+        sigma = np.maximum(p.range_sigma, p.bearing_sigma * distance)
+        return np.maximum(sigma, FLOOR) ** 2 + own.position_error**2
+
+    def _associate(self, scan: RadarScan, own: Ownship) -> Ints:
+        """Row of the track that each contact belongs to; new rows are added for the others."""
+        rows = np.full(len(scan.ids), -1, dtype=np.int64)
+        if len(self._ids) and len(scan.ids):
+            resting = ~self._moving & (self._time - self._seen > RESTING_TIME)
+            expected = np.where(resting[:, None], self._mean, self._position)
+            own_variance = np.where(resting, 1.0 / np.maximum(self._weight, 1e-12), self._p11)
+            offset = scan.positions[:, None, :2] - expected[None, :, :2]
+            distance = np.hypot(offset[..., 0], offset[..., 1])
+            variance = own_variance[None] + self._noise(scan.positions, own)[:, None]
+            gate = np.maximum(GATE * np.sqrt(variance), GATE_FLOOR)
+            hinted = scan.ids[:, None] == self._ids[None]
+            score = np.where(distance <= gate, distance - np.where(hinted, 1e6, 0.0), np.inf)
+            while True:
+                best = int(np.argmin(score))
+                contact, track = divmod(best, score.shape[1])
+                if not np.isfinite(score[contact, track]):
+                    break
+                rows[contact] = track
+                score[contact, :] = np.inf
+                score[:, track] = np.inf
+        new = np.flatnonzero(rows < 0)
+        rows[new] = len(self._ids) + np.arange(len(new))
+        self._add(scan, new, own)
+        return rows
+
+    def _add(self, scan: RadarScan, new: Ints, own: Ownship) -> None:
+        if not len(new):
+            return
+        count = len(new)
+        radii = scan.radii[new]
+        self._ids = np.concatenate([self._ids, scan.ids[new]])
+        self._position = np.concatenate([self._position, scan.positions[new]])
+        self._velocity = np.concatenate([self._velocity, np.zeros((count, 2))])
+        self._mean = np.concatenate([self._mean, scan.positions[new]])
+        self._weight = np.concatenate([self._weight, np.zeros(count)])
+        self._p11 = np.concatenate([self._p11, np.full(count, 1e12)])
+        self._p12 = np.concatenate([self._p12, np.zeros(count)])
+        self._p22 = np.concatenate([self._p22, np.full(count, FIRST_SPEED**2)])
+        self._radius = np.concatenate(
+            [self._radius, np.where(np.isnan(radii), self._parameters.safety_radius, radii)]
+        )
+        self._hits = np.concatenate([self._hits, np.zeros(count, dtype=np.int64)])
+        self._misses = np.concatenate([self._misses, np.zeros(count, dtype=np.int64)])
+        self._seen = np.concatenate([self._seen, np.full(count, scan.time)])
+        self._moving = np.concatenate([self._moving, np.zeros(count, dtype=np.bool_)])
+
+    def _correct(self, scan: RadarScan, rows: Ints, own: Ownship) -> None:
+        measured = scan.positions
+        noise = self._noise(measured, own)
+        total = self._p11[rows] + noise
+        gain, rate_gain = self._p11[rows] / total, self._p12[rows] / total
+        innovation = measured[:, :2] - self._position[rows, :2]
+        self._position[rows, :2] += gain[:, None] * innovation
+        self._position[rows, 2] = measured[:, 2]
+        self._velocity[rows] += rate_gain[:, None] * innovation
+        self._p22[rows] -= rate_gain * self._p12[rows]
+        self._p12[rows] *= 1.0 - gain
+        self._p11[rows] *= 1.0 - gain
+        self._weight[rows] += 1.0 / noise
+        shift = measured - self._mean[rows]
+        self._mean[rows] += shift / (noise * self._weight[rows])[:, None]
+        self._ids[rows] = scan.ids
+        known = ~np.isnan(scan.radii)
+        self._radius[rows[known]] = np.maximum(self._radius[rows[known]], scan.radii[known])
+        self._hits[rows] += 1
+        self._misses += 1
+        self._misses[rows] = 0
+        self._seen[rows] = scan.time
+        self._last_ids, self._last_rows = scan.ids, rows
+
+    def _classify(self) -> None:
+        """Moving or still, by the significance of the estimated speed, with hysteresis."""
+        speed = np.hypot(self._velocity[:, 0], self._velocity[:, 1])
+        sigma = np.sqrt(self._p22)
+        starts = (speed > np.maximum(MOVING_SPEED, MOVING_SIGMAS * sigma)) & (self._hits >= 2)
+        stops = speed < np.maximum(STILL_SPEED, STILL_SIGMAS * sigma)
+        moving = np.where(self._moving, ~stops, starts)
+        stopped = self._moving & ~moving
+        self._mean[stopped] = self._position[stopped]
+        self._weight[stopped] = 1.0 / np.maximum(self._p11[stopped], FLOOR**2)
+        self._moving = moving
+
+    def _forget(self, rows: Ints) -> None:
+        tentative = (self._hits < CONFIRMING_HITS) & (self._misses >= TENTATIVE_MISSES)
+        lost = self._moving & (self._time - self._seen > COASTING_TIME)
+        keep = ~(tentative | lost)
+        if keep.all():
+            return
+        for name in ("ids", "position", "velocity", "mean", "weight", "p11", "p12", "p22", "radius"):
+            setattr(self, f"_{name}", getattr(self, f"_{name}")[keep])
+        for name in ("hits", "misses", "seen", "moving"):
+            setattr(self, f"_{name}", getattr(self, f"_{name}")[keep])
+        renumbered = np.cumsum(keep) - 1
+        self._last_rows = np.where(keep[rows], renumbered[rows], -1)
+
+    def _publish(self) -> Picture:
+        before = self._picture
+        moving = self._moving
+        positions = np.where(moving[:, None], self._position, self._mean)
+        confirmed = self._hits >= CONFIRMING_HITS
+        sigma = np.where(moving, np.sqrt(self._p11), np.sqrt(1.0 / np.maximum(self._weight, 1e-12)))
+        sigma = np.where(sigma <= 2.0 * FLOOR, 0.0, sigma)
+        if before is not None and _same_still(before, self._ids, positions, moving, confirmed):
+            positions = np.where(moving[:, None], positions, before.positions)
+        else:
+            self._version += 1
+        self._picture = Picture(
+            ids=self._ids.copy(),
+            positions=positions,
+            velocities=np.where(moving[:, None], self._velocity, 0.0),
+            radii=self._radius.copy(),
+            sigma=sigma,
+            moving=moving.copy(),
+            confirmed=confirmed,
+            version=self._version,
+        )
+        return self._picture
+
+    def _current_scan(self, scan: RadarScan, own: Ownship) -> Picture:
+        """The picture of the current scan alone, moving decided by Algorithm 2 as printed."""
+        distance = np.hypot(scan.positions[:, 0] - own.north, scan.positions[:, 1] - own.east)
+        last = self._last_own
+        travelled = 0.0 if last is None else float(np.hypot(own.north - last[0], own.east - last[1]))
+        keys = scan.ids.tolist()
+        before = np.array([self._last_range.get(key, np.nan) for key in keys], dtype=np.float64)
+        change = np.abs(distance - before)
+        moving = np.where(np.isnan(before), False, change > 1.02 * travelled + 0.5)
+        self._last_own = (own.north, own.east)
+        self._last_range = dict(zip(keys, distance.tolist(), strict=True))
+        shown = self._picture
+        if shown is None or not (
+            np.array_equal(shown.ids, scan.ids)
+            and np.array_equal(shown.positions, scan.positions)
+            and np.array_equal(shown.moving, moving)
+        ):
+            self._version += 1
+        radii = np.where(np.isnan(scan.radii), self._parameters.safety_radius, scan.radii)
+        count = len(keys)
+        self._picture = Picture(
+            ids=scan.ids,
+            positions=scan.positions,
+            velocities=np.zeros((count, 2)),
+            radii=radii,
+            sigma=np.zeros(count),
+            moving=moving.astype(np.bool_),
+            confirmed=np.ones(count, dtype=np.bool_),
+            version=self._version,
+        )
+        return self._picture
+
+
+def clusters(positions: Floats, radii: Floats, link_distance: float, join_spheres: bool) -> Ints:
+    """Group obstacles that belong together: hills.
+
+    Parameters
+    ----------
+    positions : array, shape (n, 2)
+        Obstacles [m].
+    radii : array, shape (n,)
+        What must be kept from each [m].
+    link_distance : float
+        Two obstacles nearer than this are one hill [m].
+    join_spheres : bool
+        Also join two whose circles overlap, since nothing can pass between them.
+
+    Returns
+    -------
+    array, shape (n,)
+        Label of the group that each belongs to.
+
+    Notes
+    -----
+    Algorithm 3, single linkage. Differs from the paper: E36, spheres of 1 km leave no gap although their
+    centres are 1 to 2 km apart; with `join_spheres` what cannot be passed is treated as one.
+    """
+    count = len(positions)
+    if count == 0:
+        return np.empty(0, dtype=np.int64)
+    offset = positions[:, None] - positions[None]
+    distance = np.hypot(offset[..., 0], offset[..., 1])
+    linked = distance < link_distance
+    if join_spheres:
+        linked |= distance < radii[:, None] + radii[None]
+    np.fill_diagonal(linked, val=True)
+    labels = np.arange(count)
+    while True:  # each obstacle takes the least label among its neighbours until nothing changes
+        least = np.where(linked, labels[None], count).min(axis=1)
+        least = least[least]
+        if np.array_equal(least, labels):
+            return np.asarray(labels, dtype=np.int64)
+        labels = least
+
+
+def _usable(scan: RadarScan) -> RadarScan:
+    """The contacts of a scan whose position is finite."""
+    good = np.isfinite(scan.positions).all(axis=1)
+    if good.all():
+        return scan
+    return RadarScan(scan.time, scan.ids[good], scan.positions[good], scan.radii[good])
+
+
+def _same_still(
+    before: Picture, ids: Ints, positions: Floats, moving: Bools, confirmed: Bools
+) -> bool:
+    """True if what stands still is where it was, within a metre."""
+    if len(before.ids) != len(ids) or not np.array_equal(before.moving, moving):
+        return False
+    if not np.array_equal(before.confirmed, confirmed):
+        return False
+    shift = np.abs(positions[:, :2] - before.positions[:, :2]).max(axis=1, initial=0.0)
+    return bool((shift[~moving] < 1.0).all())

@@ -1,0 +1,66 @@
+"""Why a decision was taken, in words a pilot understands."""
+
+from __future__ import annotations
+
+import math
+
+from avoidance.ladder import Plan
+from avoidance.types import Ownship, Rung, Threat, Waypoint
+
+GIVEN_UP = {
+    Rung.WIDE_TURN: "; the turn is tighter than one turn radius allows for",
+    Rung.FAR: "; no point within the search limit serves",
+    Rung.CLOSE: "; no point outside the tolerance serves, only the safety margin is kept",
+    Rung.ROUTE: "; no single waypoint serves",
+}
+
+
+def obstacles(ids: tuple[int, ...]) -> str:
+    """ "obstacle 3" or "obstacles 3, 4 and 5" (at most four are named)."""
+    if len(ids) == 1:
+        return f"obstacle {ids[0]}"
+    named = [str(i) for i in ids[:4]]
+    if len(ids) > 4:
+        return f"obstacles {', '.join(named)} and {len(ids) - 4} more"
+    return f"obstacles {', '.join(named[:-1])} and {named[-1]}"
+
+
+def threat_words(threat: Threat) -> str:
+    """What is wrong with the route."""
+    who = obstacles(threat.ids)
+    if threat.moving:
+        return (
+            f"{who} (moving) would pass at {threat.clearance:.0f} m in {threat.time:.0f} s, "
+            f"{threat.required:.0f} m is to be kept"
+        )
+    verb = "cuts" if len(threat.ids) == 1 else "cut"
+    return (
+        f"{who} {verb} the route {threat.distance / 1000:.1f} km ahead: "
+        f"{threat.clearance:.0f} m where {threat.required:.0f} m is to be kept"
+    )
+
+
+def detour_words(threat: Threat, plan: Plan, own: Ownship) -> str:
+    """What is wrong and how it is flown round."""
+    start, target = plan.search.start, plan.search.target
+    corners = (start, *plan.waypoints, target)
+    added = sum(math.dist(a, b) for a, b in zip(corners, corners[1:], strict=False)) - math.dist(start, target)
+    side = _side(start, plan.waypoints[0], target)
+    count = "" if len(plan.waypoints) == 1 else f" by {len(plan.waypoints)} waypoints"
+    return f"{threat_words(threat)}; pass {side}{count}, {added:.0f} m longer{GIVEN_UP.get(plan.rung, '')}"
+
+
+def replace_words(original: Waypoint, chosen: Waypoint | None, ids: tuple[int, ...]) -> str:
+    """Why a mission waypoint is moved or skipped."""
+    number = (original.item or 0) + 1
+    why = f"waypoint {number} cannot be flown to: {obstacles(ids)} too near" if ids else f"waypoint {number} is walled in"
+    if chosen is None:
+        return f"{why}; no safe point near it can be reached, so it is skipped"
+    moved = math.hypot(chosen.north - original.north, chosen.east - original.east)
+    return f"{why}; the nearest safe point is {moved:.0f} m away"
+
+
+def _side(start: tuple[float, float], via: tuple[float, float], target: tuple[float, float]) -> str:
+    north, east = target[0] - start[0], target[1] - start[1]
+    across = north * (via[1] - start[1]) - east * (via[0] - start[0])
+    return "to the right" if across > 0.0 else "to the left"
