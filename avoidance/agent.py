@@ -150,8 +150,8 @@ class Agent:
         return None
 
     def _waypoint_room(self, known: Known) -> float:
-        """Room beyond `keep` that a mission waypoint needs: two turn radii, so that it can be left again."""
-        return 2.0 * self._performance.turn_radius if self._parameters.all_obstacles else 0.0
+        """Room beyond `keep` that a mission waypoint needs, so that it can be left again."""
+        return self._performance.turn_room if self._parameters.all_obstacles else 0.0
 
     def _arriving(self, own: Ownship, waypoint: Waypoint) -> bool:
         """True if the waypoint is reached within the next two seconds anyway."""
@@ -193,7 +193,7 @@ class Agent:
 
     def _rooms(self, known: Known, original: Waypoint) -> tuple[float, ...]:
         """Room beyond `keep` that a stand-in is given, most wanted first."""
-        turn = 2.0 * self._performance.turn_radius
+        turn = self._performance.turn_room
         if self._parameters.all_obstacles:
             return (turn, 0.5 * turn)
         return (self._parameters.tolerance - self._parameters.margin, turn)
@@ -207,6 +207,10 @@ class Agent:
             plan = way_round(_least_separation(problem, self._parameters.moving_radius), self._rng)
         if plan is not None:
             return self._fly_round(own, route, blocked, plan, begin, end)
+        if route.waypoints[end].item is not None and not blocked.threat.moving:
+            walled_in = self._move(own, route, known, end, ())
+            if walled_in is not None:
+                return walled_in
         self._retry_at = own.time + RETRY
         if begin > 0 or blocked.threat.moving:
             words = f"{threat_words(blocked.threat)}; no way round is known yet"

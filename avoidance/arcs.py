@@ -83,6 +83,12 @@ class CoveredArcs:
         return np.asarray((before >= 0) & (self.disc[before] == disc) & (self.end[before] > angle))
 
 
+def uncovered(count: int) -> CoveredArcs:
+    """No arcs on some circles: what discs apart from one another have."""
+    none = np.empty(0, dtype=np.int64)
+    return CoveredArcs(count, none, np.empty(0), np.empty(0), none, none)
+
+
 def overlapping_pairs(centres: Floats, radii: Floats, covering: Floats) -> Pairs:
     """Pairs of discs of which one covers a part of the other's circle.
 
@@ -147,7 +153,7 @@ def covered_arcs(centres: Floats, radii: Floats, covering: Floats, pairs: Pairs 
     """
     disc, by, half = pairs or overlapping_pairs(centres, radii, covering)
     if not len(disc):
-        return CoveredArcs(len(radii), disc, half, half, disc, disc)
+        return uncovered(len(radii))
     away = centres[by] - centres[disc]
     begin = np.mod(np.arctan2(away[:, 1], away[:, 0]) - half, TAU)
     end = begin + 2.0 * half

@@ -14,7 +14,8 @@ import numpy as np
 
 from avoidance.types import Bools, Floats, Performance
 
-RIGHT_ANGLE = 0.5 * math.pi
+EITHER_SIDE = math.radians(10.0)
+"""Within this of a reversal a turn may go either way [rad]."""
 SEQUENCING_DELAY = 1.0
 """A vehicle notices that it has reached a waypoint within this time [s]."""
 
@@ -44,8 +45,8 @@ def flown_segments(
     Notes
     -----
     At a corner of up to 90 degrees the vehicle turns inside the triangle of entry point, waypoint and exit
-    point, so the chord is added to the two legs. At a sharper one it may swing to either side of the end of
-    the incoming leg by two turn radii. After a change of target the turn begins where the vehicle is: it
+    point, so the chord is added to the two legs. At a sharper one it flies the turning circle beside the end
+    of the incoming leg, and from there to the exit point. After a change of target the turn begins where the vehicle is: it
     runs on by R tan(dchi/2) plus the roll distance and joins the leg from outside.
     """
     legs = np.diff(points, axis=1)
@@ -55,17 +56,14 @@ def flown_segments(
     ends = [points[:, 1:]]
     extra = [np.zeros(lengths.shape)]
     if points.shape[1] > 2:
-        corner = points[:, 1:-1]
-        before = np.minimum(
-            performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed, lengths[:, :-1]
-        )
-        after = np.minimum(performance.capture_distance, lengths[:, 1:])
-        entry = corner - before[..., None] * units[:, :-1]
-        exit_ = corner + after[..., None] * units[:, 1:]
-        sharp = _sharp(units[:, :-1], units[:, 1:])
-        starts.append(entry)
-        ends.append(np.where(sharp[..., None], corner, exit_))
-        extra.append(np.where(sharp, _swing(performance), 0.0))
+        run = performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
+        before = np.minimum(run, lengths[:, :-1])
+        entry = points[:, 1:-1] - before[..., None] * units[:, :-1]
+        exit_ = points[:, 1:-1] + np.minimum(performance.capture_distance, lengths[:, 1:])[..., None] * units[:, 1:]
+        centre, room, sharp = _turning_circle(entry, units[:, :-1], units[:, 1:], performance)
+        starts.append(np.where(sharp[..., None], centre, entry))
+        ends.append(exit_)
+        extra.append(room)
     if course is not None:
         begin = _first_turn(points[:, 0], units[:, 0], lengths[:, 0], course, performance)
         starts.append(begin[0])
@@ -82,14 +80,26 @@ def turn_angle(first: Floats, second: Floats) -> Floats:
     return angle
 
 
-def _sharp(first: Floats, second: Floats) -> Bools:
-    sharp: Bools = (first[..., 0] * second[..., 0] + first[..., 1] * second[..., 1]) < 0.0
-    return sharp
+def _turning_circle(
+    entry: Floats, first: Floats, second: Floats, performance: Performance
+) -> tuple[Floats, Floats, Bools]:
+    """Centre of a turn through more than 90 degrees, the room about it, and where a turn is that sharp.
 
-
-def _swing(performance: Performance) -> float:
-    """Sideways room of a turn through more than 90 degrees [m]."""
-    return 2.0 * performance.turn_radius + performance.airspeed * performance.roll_time
+    The vehicle rolls in from the entry point and turns to the side of the new direction; near a reversal
+    it may turn to either side, and the room is two turn radii about the entry instead of one about the
+    circle's centre.
+    """
+    dot = first[..., 0] * second[..., 0] + first[..., 1] * second[..., 1]
+    cross = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
+    sharp = dot < 0.0
+    either = dot < -math.cos(EITHER_SIDE)
+    radius = performance.turn_radius
+    side = np.where(either, 0.0, np.sign(cross))
+    normal = np.stack([-first[..., 1], first[..., 0]], axis=-1)
+    roll_in = performance.airspeed * performance.roll_time
+    centre = entry + roll_in * first + (side * radius)[..., None] * normal
+    room = np.where(sharp, np.where(either, 2.0, 1.0) * radius, 0.0)
+    return centre, room, sharp
 
 
 def _first_turn(
@@ -98,16 +108,15 @@ def _first_turn(
     """The turn on to the first leg from the present course: two segments for each polyline."""
     ahead = np.broadcast_to(np.array([math.cos(course), math.sin(course)]), unit.shape)
     angle = turn_angle(ahead, unit)
-    sharp = angle > RIGHT_ANGLE
     run = performance.airspeed * (performance.roll_time + SEQUENCING_DELAY)
+    centre, room, sharp = _turning_circle(
+        start + SEQUENCING_DELAY * performance.airspeed * ahead, ahead, unit, performance
+    )
     reach = run + performance.turn_radius * np.tan(0.5 * np.where(sharp, 0.0, angle))
     reach = np.where(angle < 1e-3, 0.0, reach)
     turn = start + reach[..., None] * ahead
-    capture = np.minimum(performance.capture_distance, length)
-    parallel = turn + np.where(sharp, 0.0, capture)[..., None] * unit
-    extra = np.where(sharp, _swing(performance), 0.0)
-    return (
-        np.stack([start, turn], axis=1),
-        np.stack([turn, parallel], axis=1),
-        np.stack([extra, extra], axis=1),
-    )
+    capture = np.minimum(performance.capture_distance, length)[..., None] * unit
+    joins = np.where(sharp[..., None], start + capture, turn + capture)
+    starts = np.stack([start, np.where(sharp[..., None], centre, turn)], axis=1)
+    ends = np.stack([turn, joins], axis=1)
+    return starts, ends, np.stack([np.zeros_like(room), room], axis=1)

@@ -32,6 +32,9 @@ class Optimiser(Protocol):
     def tell(self, costs: Floats) -> None: ...
 
 
+HOPELESS = 8
+"""Rule seeds find a feasible point if there is one; a swarm without any after so many iterations is stopped."""
+
 OPTIMISERS: dict[str, type[Optimiser]] = {"pso": Pso}
 """Planners by name."""
 
@@ -70,8 +73,11 @@ def search_waypoint(problem: WaypointProblem, rng: np.random.Generator) -> Searc
         optimiser.tell(problem.rank(points))
         evaluations += len(points)
         iterations += 1
-        if first_feasible is None and optimiser.best_cost < INFEASIBLE:
-            first_feasible = iterations
+        if first_feasible is None:
+            if optimiser.best_cost < INFEASIBLE:
+                first_feasible = iterations
+            elif parameters.rule_seeds and iterations >= HOPELESS:
+                break
     feasible = optimiser.best_cost < INFEASIBLE
     best = (float(optimiser.best[0]), float(optimiser.best[1]))
     return Search(

@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from avoidance.arcs import STRIDE, TAU, admit, checked_discs, covered_arcs
+from avoidance.arcs import STRIDE, TAU, admit, checked_discs, covered_arcs, uncovered
 from avoidance.geometry import Point
 from avoidance.path import TOUCH, Path, clear
 from avoidance.tangents import Tangents, common_tangents, unobstructed
@@ -81,9 +81,8 @@ class _Graph:
         self.world, self.sizes = world, sizes
         self.members = np.array([-1, -1], dtype=np.int64)  # number in the world of each disc of the graph
         self.centres, self.radii = ends, np.zeros(2)
-        self.arcs = covered_arcs(ends, self.radii, self.radii)
-        none = np.empty(0, dtype=np.int64)
-        self.tangents = common_tangents(none, none, self.centres, self.radii)
+        self.arcs = uncovered(2)
+        self.tangents = Tangents.none()
 
     def add(self, discs: Ints) -> None:
         """Put discs of the world into the graph."""
@@ -134,30 +133,29 @@ class _Graph:
         seeds = self.tangents.take(self.tangents.i == START)
         between = self.tangents.take(self.tangents.i > GOAL)
         final = self.tangents.take(self.tangents.i == GOAL).reversed()
-        flights = between.joined(between.reversed()).joined(final)
+        flights = between.joined(between.reversed(), final)
         if not len(seeds) or not len(final):
             return None
         group, offset = self._placed(flights.i, flights.sense_i, flights.angle_i)
         order = np.argsort(group * STRIDE + offset, kind="stable")
         flights, group, offset = flights.take(order), group[order], offset[order]
-        radius, circular = self.radii[flights.i], group >= 2 * len(self.arcs.disc)
-        slides = _Slides(group, offset, radius, circular)
+        slides = _Slides(group, offset, self.radii[flights.i], group >= 2 * len(self.arcs.disc))
         after, slide = slides.after_departures()
-        place = self._placed(flights.j, flights.sense_j, flights.angle_j)
-        landing, run = slides.after_arrivals(*place, self.radii[flights.j])
-        landing[flights.j == GOAL] = len(flights)
-        seed_place = self._placed(seeds.j, seeds.sense_j, seeds.angle_j)
-        seed_landing, seed_run = slides.after_arrivals(*seed_place, self.radii[seeds.j])
+        every, last = flights.joined(seeds), len(flights)
+        place = self._placed(every.j, every.sense_j, every.angle_j)
+        landing, run = slides.after_arrivals(*place, self.radii[every.j])
+        landing[every.j == GOAL] = last
+        onward, cost = landing.tolist(), (every.length + run).tolist()
         rest = np.hypot(*(flights.point - self.centres[GOAL]).T)
         trail = _cheapest(
-            (seed_landing.tolist(), (seeds.length + seed_run).tolist()),
+            (onward[last:], cost[last:]),
             (after.tolist(), slide.tolist()),
-            (landing.tolist(), (flights.length + run).tolist()),
+            (onward[:last], cost[:last]),
             [*rest.tolist(), 0.0],
         )
         if trail is None:
             return None
-        return self._path(seeds.take(np.array(trail[:1])).joined(flights.take(np.array(trail[1:]))))
+        return self._path(every.take(np.array([last + trail[0], *trail[1:]])))
 
     def _placed(self, disc: Ints, sense: Ints, angle: Floats) -> tuple[Ints, Floats]:
         """Group (free arc and sense of rotation) of each point and its angle from the group's beginning."""

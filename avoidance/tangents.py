@@ -21,74 +21,89 @@ CHUNK = 40_000
 class Tangents:
     """Directed tangents: leave disc i turning with one sense, arrive on disc j turning with another."""
 
-    i: Ints
-    """Disc left, shape (t,)."""
-    j: Ints
-    """Disc reached, shape (t,)."""
-    sense_i: Ints
-    """Sense of rotation on disc i, +1 clockwise, shape (t,)."""
-    sense_j: Ints
-    """Sense of rotation on disc j, shape (t,)."""
-    point: Floats
-    """Where it leaves disc i (north, east) [m], shape (t, 2)."""
-    course: Floats
-    """Unit vector of travel, shape (t, 2)."""
-    length: Floats
-    """Length [m], shape (t,)."""
-    angle_i: Floats
-    """Angle of the point on disc i, [0, 2π] from north [rad], shape (t,)."""
-    angle_j: Floats
-    """Angle of the point on disc j [rad], shape (t,)."""
+    ends: Ints
+    """Disc i, sense on it (+1 clockwise), disc j, sense on it, shape (t, 4)."""
+    lines: Floats
+    """Point left (north, east) [m], unit vector of travel (north, east), length [m], angles of the ends on
+    discs i and j, [0, 2π] from north [rad], shape (t, 7)."""
 
-    def __len__(self) -> int:
-        """Return the number of tangents."""
-        return len(self.i)
+    @classmethod
+    def none(cls) -> Tangents:
+        """Return no tangents."""
+        return cls(np.empty((0, 4), dtype=np.int64), np.empty((0, 7)))
 
-    def take(self, which: Bools | Ints) -> Tangents:
-        """Return the tangents chosen by a mask or by indices."""
-        return Tangents(
-            i=self.i[which],
-            j=self.j[which],
-            sense_i=self.sense_i[which],
-            sense_j=self.sense_j[which],
-            point=self.point[which],
-            course=self.course[which],
-            length=self.length[which],
-            angle_i=self.angle_i[which],
-            angle_j=self.angle_j[which],
-        )
+    @property
+    def i(self) -> Ints:
+        """Disc left, shape (t,)."""
+        return self.ends[:, 0]
 
-    def reversed(self) -> Tangents:
-        """Return the same tangents flown the other way."""
-        return Tangents(
-            i=self.j,
-            j=self.i,
-            sense_i=-self.sense_j,
-            sense_j=-self.sense_i,
-            point=self.end,
-            course=-self.course,
-            length=self.length,
-            angle_i=self.angle_j,
-            angle_j=self.angle_i,
-        )
+    @property
+    def sense_i(self) -> Ints:
+        """Sense of rotation on disc i, +1 clockwise, shape (t,)."""
+        return self.ends[:, 1]
+
+    @property
+    def j(self) -> Ints:
+        """Disc reached, shape (t,)."""
+        return self.ends[:, 2]
+
+    @property
+    def sense_j(self) -> Ints:
+        """Sense of rotation on disc j, shape (t,)."""
+        return self.ends[:, 3]
+
+    @property
+    def point(self) -> Floats:
+        """Where each leaves disc i (north, east) [m], shape (t, 2)."""
+        return self.lines[:, 0:2]
+
+    @property
+    def course(self) -> Floats:
+        """Unit vector of travel, shape (t, 2)."""
+        return self.lines[:, 2:4]
+
+    @property
+    def length(self) -> Floats:
+        """Length [m], shape (t,)."""
+        return self.lines[:, 4]
+
+    @property
+    def angle_i(self) -> Floats:
+        """Angle of the end on disc i [rad], shape (t,)."""
+        return self.lines[:, 5]
+
+    @property
+    def angle_j(self) -> Floats:
+        """Angle of the end on disc j [rad], shape (t,)."""
+        return self.lines[:, 6]
 
     @property
     def end(self) -> Floats:
         """Where each reaches disc j (north, east) [m], shape (t, 2)."""
-        return np.asarray(self.point + self.length[:, None] * self.course)
+        return np.asarray(self.point + self.lines[:, 4:5] * self.course)
 
-    def joined(self, other: Tangents) -> Tangents:
+    def __len__(self) -> int:
+        """Return the number of tangents."""
+        return len(self.ends)
+
+    def take(self, which: Bools | Ints) -> Tangents:
+        """Return the tangents chosen by a mask or by indices."""
+        return Tangents(self.ends[which], self.lines[which])
+
+    def reversed(self) -> Tangents:
+        """Return the same tangents flown the other way."""
+        ends = self.ends[:, [2, 3, 0, 1]]
+        ends[:, 1::2] *= -1
+        lines = self.lines[:, [0, 1, 2, 3, 4, 6, 5]]
+        lines[:, 0:2] = self.end
+        lines[:, 2:4] *= -1.0
+        return Tangents(ends, lines)
+
+    def joined(self, *others: Tangents) -> Tangents:
         """Return these tangents followed by others."""
         return Tangents(
-            i=np.concatenate([self.i, other.i]),
-            j=np.concatenate([self.j, other.j]),
-            sense_i=np.concatenate([self.sense_i, other.sense_i]),
-            sense_j=np.concatenate([self.sense_j, other.sense_j]),
-            point=np.concatenate([self.point, other.point]),
-            course=np.concatenate([self.course, other.course]),
-            length=np.concatenate([self.length, other.length]),
-            angle_i=np.concatenate([self.angle_i, other.angle_i]),
-            angle_j=np.concatenate([self.angle_j, other.angle_j]),
+            np.concatenate([self.ends, *(other.ends for other in others)]),
+            np.concatenate([self.lines, *(other.lines for other in others)]),
         )
 
 
@@ -119,23 +134,28 @@ def common_tangents(i: Ints, j: Ints, centres: Floats, radii: Floats) -> Tangent
     i, j = np.repeat(i, 4), np.repeat(j, 4)
     senses = np.tile(SENSES, (len(i) // 4, 1))
     sense_i, sense_j = senses[:, 0], senses[:, 1]
-    k = sense_j * radii[j] - sense_i * radii[i]
+    radius_i, radius_j = radii[i], radii[j]
+    k = sense_j * radius_j - sense_i * radius_i
     between = centres[j] - centres[i]
     distance = np.hypot(between[:, 0], between[:, 1])
     real = (distance > 0.0) & (distance >= np.abs(k) * (1.0 - TOUCHING))
-    real &= ((radii[i] > 0.0) | (sense_i > 0)) & ((radii[j] > 0.0) | (sense_j > 0))
-    i, j, sense_i, sense_j = i[real], j[real], sense_i[real], sense_j[real]
+    real &= (radius_i > 0.0) | (sense_i > 0)
+    real &= (radius_j > 0.0) | (sense_j > 0)
+    ends = np.column_stack([i, sense_i, j, sense_j])[real]
     k, between, distance = k[real], between[real], distance[real]
+    sense_i, sense_j, offset = sense_i[real], sense_j[real], (sense_i * radius_i)[real]
+    lines = np.empty((len(ends), 7))
     length = np.sqrt(np.maximum((distance - k) * (distance + k), 0.0))
     scale = distance * np.hypot(length, k)
     north = (length * between[:, 0] + k * between[:, 1]) / scale
     east = (length * between[:, 1] - k * between[:, 0]) / scale
-    offset = sense_i * radii[i]
-    point = np.column_stack([centres[i, 0] + offset * east, centres[i, 1] - offset * north])
-    angle_i = np.mod(np.arctan2(-sense_i * north, sense_i * east), math.tau)
-    angle_j = np.mod(np.arctan2(-sense_j * north, sense_j * east), math.tau)
-    course = np.column_stack([north, east])
-    return Tangents(i, j, sense_i, sense_j, point, course, length, angle_i, angle_j)
+    lines[:, 0:2] = centres[ends[:, 0]]
+    lines[:, 0] += offset * east
+    lines[:, 1] -= offset * north
+    lines[:, 2], lines[:, 3], lines[:, 4] = north, east, length
+    lines[:, 5] = np.mod(np.arctan2(-sense_i * north, sense_i * east), math.tau)
+    lines[:, 6] = np.mod(np.arctan2(-sense_j * north, sense_j * east), math.tau)
+    return Tangents(ends, lines)
 
 
 def unobstructed(tangents: Tangents, discs: Ints, centres: Floats, radii: Floats) -> Bools:

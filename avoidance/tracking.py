@@ -117,7 +117,7 @@ class Tracker:
         self._predict(step)
         rows = self._associate(scan, own)
         self._correct(scan, rows, own)
-        self._classify()
+        self._classify(rows)
         self._forget(rows)
         return self._publish()
 
@@ -216,13 +216,14 @@ class Tracker:
         self._seen[rows] = scan.time
         self._last_ids, self._last_rows = scan.ids, rows
 
-    def _classify(self) -> None:
-        """Moving or still, by the significance of the estimated speed, with hysteresis."""
+    def _classify(self, rows: Ints) -> None:
+        """Moving or still, by the significance of the estimated speed, with hysteresis; only what is seen."""
         speed = np.hypot(self._velocity[:, 0], self._velocity[:, 1])
         sigma = np.sqrt(self._p22)
         starts = (speed > np.maximum(MOVING_SPEED, MOVING_SIGMAS * sigma)) & (self._hits >= 2)
         stops = speed < np.maximum(STILL_SPEED, STILL_SIGMAS * sigma)
-        moving = np.where(self._moving, ~stops, starts)
+        moving = self._moving.copy()
+        moving[rows] = np.where(self._moving, ~stops, starts)[rows]
         stopped = self._moving & ~moving
         self._mean[stopped] = self._position[stopped]
         self._weight[stopped] = 1.0 / np.maximum(self._p11[stopped], FLOOR**2)

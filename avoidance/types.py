@@ -86,6 +86,11 @@ class Performance:
         """Largest turn radius over ground at the bank limit, R = (V + W)²/(g tan φ) [m] (Eq. 13)."""
         return (self.airspeed + self.wind_bound) ** 2 / (GRAVITY * math.tan(self.max_bank))
 
+    @property
+    def turn_room(self) -> float:
+        """Free radius about a point that lets the vehicle turn there in any direction [m]."""
+        return 2.0 * self.turn_radius + self.airspeed * self.roll_time
+
 
 @dataclass(frozen=True, slots=True)
 class Waypoint:

@@ -29,7 +29,7 @@ def test_a_gentle_corner_adds_its_chord() -> None:
 def test_a_reversal_needs_two_turn_radii_to_the_side() -> None:
     route = np.array([[[0.0, 0.0], [1000.0, 0.0], [0.0, 1.0]]])
     _, _, extra = flown_segments(route, None, PERFORMANCE)
-    assert extra[0, 2] == pytest.approx(2 * PERFORMANCE.turn_radius + 15.0)
+    assert extra[0, 2] == pytest.approx(2 * PERFORMANCE.turn_radius)
 
 
 def test_a_turn_from_the_present_course_runs_on_first() -> None:

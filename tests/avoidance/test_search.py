@@ -1,0 +1,102 @@
+"""One waypoint search: problem, seeds, planner and yardsticks together."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from avoidance.parameters import DEFAULT, PAPER, Parameters
+from avoidance.problem import INFEASIBLE, Intruders
+from avoidance.search import search_waypoint
+from avoidance.seeds import rule_seeds, sphere_seeds
+from avoidance.yardsticks import best_waypoint, length_to_optimum, search_gap
+from tests.avoidance.worlds import problem
+
+SINGLE = [(9000.0, 400.0)]
+HILL = [(9000.0, 400.0), (9300.0, 300.0), (9600.0, 500.0)]
+
+
+@pytest.mark.parametrize("parameters", [DEFAULT, PAPER], ids=["default", "paper"])
+@pytest.mark.parametrize("centres", [SINGLE, HILL], ids=["single", "hill"])
+def test_the_waypoint_meets_every_constraint(
+    parameters: Parameters, centres: list[tuple[float, float]]
+) -> None:
+    question = problem(centres, parameters=parameters)
+    search = search_waypoint(question, np.random.default_rng(1))
+    assert search.found is not None
+    broken = question.constraints(np.array([search.found]))
+    assert {name: float(value[0]) for name, value in broken.items()} == dict.fromkeys(broken, 0.0)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_default_planner_is_within_a_thousandth_of_the_best(seed: int) -> None:
+    search = search_waypoint(problem(HILL), np.random.default_rng(seed))
+    gap = search_gap(search)
+    assert gap is not None
+    assert 0.0 <= gap <= 0.001
+
+
+def test_the_shorter_side_is_taken() -> None:
+    search = search_waypoint(problem([(9000.0, 400.0)]), np.random.default_rng(0))
+    assert search.found is not None
+    assert search.found[1] < 0.0  # the obstacle is to the right of the leg, so pass left (Sec. 5.4, case i)
+
+
+def test_the_other_side_is_taken_when_the_short_one_is_blocked() -> None:
+    blocked = [(9000.0, 400.0), (9000.0, -1500.0), (9000.0, -3200.0)]
+    search = search_waypoint(problem(blocked), np.random.default_rng(0))
+    assert search.found is not None
+    assert search.found[1] > 0.0  # Sec. 5.4, case ii
+
+
+def test_nothing_is_found_where_the_target_is_walled_in() -> None:
+    ring = [(20_000 + 2500 * math.cos(a), 2500 * math.sin(a)) for a in np.linspace(0, 2 * math.pi, 12)]
+    question = problem(ring, target=(20_000.0, 0.0))
+    assert search_waypoint(question, np.random.default_rng(0)).found is None
+    assert best_waypoint(question) is None
+
+
+def test_infeasible_candidates_rank_after_feasible_ones() -> None:
+    question = problem(SINGLE)
+    ranks = question.rank(np.array([[9000.0, 400.0], [9000.0, -1700.0], [9000.0, 100.0]]))
+    assert ranks[1] < INFEASIBLE < ranks[2]
+    assert ranks[2] < ranks[0] + 1e6
+
+
+def test_a_waypoint_is_kept_clear_of_an_intruder() -> None:
+    """Head-on at the same speed: the detour keeps d + h all along."""
+    oncoming = Intruders(np.array([[9000.0, 0.0]]), np.array([[-15.0, 0.0]]), np.array([1300.0]))
+    question = problem([], target=(30_000.0, 0.0), intruders=oncoming)
+    search = search_waypoint(question, np.random.default_rng(0))
+    assert search.found is not None
+    assert question.constraints(np.array([search.found]))["g5"][0] == 0.0
+
+
+def test_the_printed_seeds_lie_outside_on_both_sides() -> None:
+    """Erratum E26: on the sphere of RS every seed would break g1."""
+    question = problem(SINGLE, parameters=PAPER)
+    seeds = sphere_seeds(question, 10, np.random.default_rng(0))
+    distance = np.hypot(seeds[:, 0] - 9000.0, seeds[:, 1] - 400.0)
+    assert (distance >= 2000.0).all()
+    assert (seeds[:, 1] > 400.0).sum() == 5
+
+
+def test_rule_seeds_begin_with_a_feasible_point() -> None:
+    question = problem(HILL)
+    seeds, evaluated = rule_seeds(question, 20)
+    assert question.rank(seeds[:1])[0] < INFEASIBLE
+    assert evaluated > 0
+
+
+def test_length_to_optimum_compares_with_the_shortest_path() -> None:
+    search = search_waypoint(problem(SINGLE), np.random.default_rng(0))
+    ratio = length_to_optimum(search)
+    assert ratio is not None
+    assert 1.0 <= ratio < 1.001
+
+
+def test_the_gap_has_no_meaning_without_a_detour() -> None:
+    search = search_waypoint(problem([(9000.0, 3000.0)]), np.random.default_rng(0))
+    assert search_gap(search) is None
