@@ -29,6 +29,9 @@ RUNGS: tuple[tuple[Rung, frozenset[str]], ...] = (
 LARGEST_CORNER = math.radians(40.0)
 """Heading change of a corner of an exact route [rad]."""
 
+WORTH_A_ROUTE = 1.1
+"""A single waypoint beyond the search limit is taken only while an exact route is not shorter by this."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
@@ -55,8 +58,13 @@ def way_round(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None
     search = None
     for rung, relaxed in RUNGS:
         search = search_waypoint(replace(problem, relaxed=relaxed), rng)
-        if search.found is not None:
-            return Plan(rung, (search.found,), search)
+        if search.found is None:
+            continue
+        if "g2" in relaxed:
+            route = exact_route(problem)
+            if route is not None and _length(problem, (search.found,)) > WORTH_A_ROUTE * _length(problem, route):
+                return Plan(Rung.ROUTE, route, search)
+        return Plan(rung, (search.found,), search)
     route = exact_route(problem)
     if route is None or search is None:
         return None
@@ -83,6 +91,11 @@ def exact_route(problem: WaypointProblem) -> tuple[tuple[float, float], ...] | N
             inner = corners[1:-1]
             return tuple((float(point[0]), float(point[1])) for point in inner)
     return None
+
+
+def _length(problem: WaypointProblem, waypoints: tuple[tuple[float, float], ...]) -> float:
+    corners = (problem.start, *waypoints, problem.target)
+    return sum(math.dist(a, b) for a, b in zip(corners, corners[1:], strict=False))
 
 
 def _flyable(problem: WaypointProblem, corners: Floats) -> bool:

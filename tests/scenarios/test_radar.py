@@ -1,0 +1,89 @@
+"""What the simulated radar shows, with and without its faults."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from flyers import StraightFlyer
+
+from scenarios.radar import FIRST_FALSE_ID, SimulatedRadar
+from scenarios.scenario import Obstacle, RadarSettings
+from scenarios.world import World
+
+
+def radar_and_state(places, flyer=None, **settings):
+    obstacles = [
+        Obstacle(k, n, e, 200.0, 1000.0 + k) for k, (n, e) in enumerate(places, start=1)
+    ]
+    flyer = flyer or StraightFlyer()
+    world = World(obstacles, {"own": flyer})
+    return SimulatedRadar(world, RadarSettings(**settings), np.random.default_rng(1)), flyer, world
+
+
+def test_sees_what_is_in_range_and_exactly_there():
+    radar, flyer, _ = radar_and_state([(9_999.0, 0.0), (10_001.0, 0.0), (-6000.0, 8000.0)])
+    scan = radar.scan(flyer.state(), 0.0)
+    assert scan.ids.tolist() == [1, 3]
+    assert scan.positions.tolist() == [[9999.0, 0.0, 200.0], [-6000.0, 8000.0, 200.0]]
+    assert scan.radii.tolist() == [1001.0, 1003.0]
+
+
+def test_an_empty_sky_is_an_empty_scan():
+    radar, flyer, _ = radar_and_state([(90_000.0, 0.0)])
+    scan = radar.scan(flyer.state(), 3.0)
+    assert (scan.time, scan.ids.shape, scan.positions.shape) == (3.0, (0,), (0, 3))
+
+
+def test_without_faults_no_random_number_is_drawn():
+    radar, flyer, _ = radar_and_state([(5000.0, 0.0)])
+    before = radar._rng.bit_generator.state
+    radar.scan(flyer.state(), 0.0)
+    assert radar._rng.bit_generator.state == before
+
+
+def test_field_of_view_is_about_the_nose():
+    flyer = StraightFlyer(heading=math.radians(170.0))
+    places = [(-5000.0, 0.0), (5000.0, 0.0), (0.0, 5000.0), (0.0, -5000.0)]
+    radar, flyer, _ = radar_and_state(places, flyer, field_of_view=math.radians(40.0))
+    assert radar.scan(flyer.state(), 0.0).ids.tolist() == [1]
+
+
+def test_noise_has_the_stated_size():
+    radar, flyer, _ = radar_and_state([(6000.0, 0.0)], range_noise=50.0, bearing_noise=0.01)
+    seen = np.array([radar.scan(flyer.state(), 0.0).positions[0] for _ in range(4000)])
+    assert seen[:, 0].std() == pytest.approx(50.0, rel=0.06)
+    assert seen[:, 1].std() == pytest.approx(60.0, rel=0.06)
+    assert np.abs(seen.mean(axis=0) - (6000.0, 0.0, 200.0)).max() < 5.0
+
+
+def test_detection_probability():
+    radar, flyer, _ = radar_and_state([(6000.0, 0.0)], detection_probability=0.7)
+    seen = sum(radar.scan(flyer.state(), 0.0).ids.size for _ in range(2000))
+    assert seen == pytest.approx(1400, abs=100)
+
+
+def test_false_tracks_are_in_range_and_never_named_alike():
+    radar, flyer, _ = radar_and_state([(6000.0, 0.0)], false_tracks=2.0, range=8000.0)
+    scans = [radar.scan(flyer.state(), 0.0) for _ in range(500)]
+    false = [i for scan in scans for i in scan.ids.tolist() if i >= FIRST_FALSE_ID]
+    assert len(false) == len(set(false)) == pytest.approx(1000, abs=150)
+    assert all(np.hypot(s.positions[:, 0], s.positions[:, 1]).max() <= 8000.0 for s in scans)
+    assert all(math.isnan(s.radii[-1]) for s in scans if s.ids[-1] >= FIRST_FALSE_ID)
+
+
+def test_latency_delivers_old_sweeps_with_their_time():
+    radar, flyer, world = radar_and_state([(6000.0, 0.0)], latency=2.0)
+    scans = []
+    for _ in range(5):
+        scans.append(radar.scan(flyer.state(), world.now))
+        world.advance(1.0)
+    assert [scan.time for scan in scans] == [-2.0, -1.0, 0.0, 1.0, 2.0]
+    assert [scan.ids.size for scan in scans] == [0, 0, 1, 1, 1]
+
+
+def test_scans_are_read_only():
+    radar, flyer, _ = radar_and_state([(6000.0, 0.0)], range_noise=1.0)
+    with pytest.raises(ValueError, match="read-only"):
+        radar.scan(flyer.state(), 0.0).positions[0, 0] = 0.0
