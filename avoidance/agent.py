@@ -37,6 +37,8 @@ CONFLICT_SHARE = 0.75
 """A route is left alone until an intruder would come nearer than this share of d + h."""
 HOLD_RADII = 1.5
 """Radius of a holding orbit in turn radii."""
+PATIENCE = 8
+"""A mission item that no route leads to is skipped after so many attempts from a holding orbit."""
 RETRY = 5.0
 """While holding, or while a later leg is blocked, a way is looked for again after this time [s]."""
 
@@ -72,7 +74,8 @@ class Agent:
         self._rng = np.random.default_rng(0) if rng is None else rng
         self._tracker = Tracker(parameters)
         self._mission: dict[int, Waypoint] = {}
-        self._checked: tuple[int, int] | None = None
+        self._checked: int | None = None
+        self._failures = 0
         self._checked_route: Route | None = None
         self._avoiding_intruder = False
         self._holding = False
@@ -98,15 +101,15 @@ class Agent:
         picture = self._tracker.update(scan, own)
         if not route.waypoints:
             return CLEAR
-        moving = bool(picture.moving.any())
-        if not (moving or self._avoiding_intruder or self._holding or own.time >= self._retry_at):
-            if self._checked_route is route and self._checked == (picture.version, picture.size):
-                return CLEAR
+        traffic = bool(picture.moving.any()) or self._avoiding_intruder
+        unchanged = self._checked == picture.version and (self._holding or self._checked_route is route)
+        if unchanged and not traffic and own.time < self._retry_at:
+            return CLEAR
         self._learn(route)
         known = known_obstacles(picture, own, route, self._performance, self._parameters)
         decision = self._decide(own, route, known)
-        if isinstance(decision, Keep):
-            self._checked_route, self._checked = route, (picture.version, picture.size)
+        if isinstance(decision, Keep | Hold):
+            self._checked_route, self._checked = route, picture.version
         return decision
 
     def _decide(self, own: Ownship, route: Route, known: Known) -> Decision:
@@ -215,6 +218,9 @@ class Agent:
         if begin > 0 or blocked.threat.moving:
             words = f"{threat_words(blocked.threat)}; no way round is known yet"
             return Keep(why=words, threat=blocked.threat, rung=Rung.ORBIT)
+        self._failures += 1
+        if self._failures > PATIENCE and route.waypoints[end].item is not None:
+            return self._skip(route, blocked, end)
         return self._hold(own, known, blocked)
 
     def _problem(
@@ -268,6 +274,7 @@ class Agent:
         why = detour_words(blocked.threat, plan, own)
         self._avoiding_intruder = blocked.threat.moving
         self._holding = False
+        self._failures = 0
         if len(new) == 1:
             return Detour(
                 why=why,
@@ -279,6 +286,19 @@ class Agent:
             )
         return Reroute(
             why=why, threat=blocked.threat, rung=plan.rung, route=waypoints, search=plan.search, waypoints=new
+        )
+
+    def _skip(self, route: Route, blocked: Blocked, end: int) -> Decision:
+        """Give up a mission item that no route leads to."""
+        self._failures = 0
+        self._holding = False
+        return Replace(
+            why=f"{threat_words(blocked.threat)}; no route to waypoint "
+            f"{(route.waypoints[end].item or 0) + 1} can be flown, so it is skipped",
+            threat=blocked.threat,
+            rung=Rung.ORBIT,
+            route=route.waypoints[end + 1 :],
+            waypoint=None,
         )
 
     # --- waiting, and going on --------------------------------------------------------------------------
@@ -310,6 +330,7 @@ class Agent:
         """End a hold, or undo a detour round an intruder that has passed."""
         if self._holding:
             self._holding = False
+            self._failures = 0
             return Resume(why="the way is clear again", route=route.waypoints)
         if not self._avoiding_intruder:
             return CLEAR

@@ -208,7 +208,7 @@ def free_candidates(target: Point, centres: Floats, radii: Floats) -> Floats:
     wide = sizes * (1.0 + OUTSIDE)
     away = goal - world
     distance = np.hypot(away[:, 0], away[:, 1])
-    apart = distance > 0.0
+    apart = distance > OUTSIDE * wide
     feet = world[apart] + away[apart] * (wide[apart] / distance[apart])[:, None]
     compass = np.array([(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)])
     round_target = world[~apart][:, None] + wide[~apart][:, None, None] * compass

@@ -47,13 +47,11 @@ class Path:
             Distances [m], shape (m,), in closed form.
         """
         straight = np.flatnonzero(self.discs < 0)
-        least = np.full(len(centres), math.inf)
-        if len(straight):
-            distances = segments_clearance(self.points[straight], self.points[straight + 1], centres)
-            least = distances.min(axis=0)
-        for k in np.flatnonzero(self.discs >= 0).tolist():
-            least = np.minimum(least, self._arc_clearance(k, centres))
-        return least
+        distances = segments_clearance(self.points[straight], self.points[straight + 1], centres)
+        least = distances.min(axis=0, initial=math.inf)
+        if len(straight) < len(self.discs):
+            least = np.minimum(least, self._arcs_clearance(centres))
+        return np.asarray(least)
 
     def polyline(self, max_turn: float = math.radians(30.0)) -> Floats:
         """Waypoints that fly the path, never inside a disc that the path keeps out of.
@@ -92,17 +90,19 @@ class Path:
         north, east = self.points[k] - self.centres[self.discs[k]]
         return math.atan2(float(east), float(north))
 
-    def _arc_clearance(self, k: int, centres: Floats) -> Floats:
-        """Least distance between arc k and each of some points [m]."""
-        disc, sweep = int(self.discs[k]), float(self.sweeps[k])
-        away = centres - self.centres[disc]
-        turned = np.mod(
-            math.copysign(1.0, sweep) * (np.arctan2(away[:, 1], away[:, 0]) - self._bearing(k)), math.tau
-        )
-        ends = self.points[k : k + 2]
-        to_ends = np.hypot(centres[:, 0, None] - ends[:, 0], centres[:, 1, None] - ends[:, 1]).min(axis=1)
-        to_arc = np.abs(np.hypot(away[:, 0], away[:, 1]) - self.radii[disc])
-        return np.asarray(np.where(turned <= abs(sweep), to_arc, to_ends))
+    def _arcs_clearance(self, centres: Floats) -> Floats:
+        """Least distance between the arcs and each of some points [m], shape (m,)."""
+        arcs = np.flatnonzero(self.discs >= 0)
+        discs, sweeps = self.discs[arcs], self.sweeps[arcs, None]
+        hubs, radii = self.centres[discs], self.radii[discs, None]
+        begin = self.points[arcs] - hubs
+        north, east = centres[:, 0] - hubs[:, 0, None], centres[:, 1] - hubs[:, 1, None]
+        turned = np.sign(sweeps) * (np.arctan2(east, north) - np.arctan2(begin[:, 1], begin[:, 0])[:, None])
+        facing = np.mod(turned, math.tau) <= np.abs(sweeps)
+        to_arcs = np.where(facing, np.abs(np.hypot(north, east) - radii), math.inf)
+        ends = self.points[np.concatenate([arcs, arcs + 1])]
+        to_ends = np.hypot(centres[:, 0] - ends[:, 0, None], centres[:, 1] - ends[:, 1, None])
+        return np.asarray(np.minimum(to_arcs.min(axis=0), to_ends.min(axis=0)))
 
     def _corners(self, k: int, max_turn: float) -> Floats:
         """Corners outside the disc that replace arc k, shape (c, 2) [m]."""

@@ -2,8 +2,8 @@
 
 The shortest path consists of segments that touch discs and of arcs on discs. Its graph has the free common
 tangents of the discs as edges, joined by the free arcs between them; start and goal are discs of radius 0.
-Discs come in lazily: solve with none, add those that the path cuts, repeat. A path that is shortest among
-some of the discs and clear of all of them is shortest among all, so that the result stays exact.
+Discs come in lazily: solve with none, add those that the path cuts or nearly cuts, repeat. A path that is
+shortest among some of the discs and clear of all of them is shortest among all: the result stays exact.
 """
 
 from __future__ import annotations
@@ -24,6 +24,8 @@ __all__ = ["Path", "clear", "shortest_path"]
 START, GOAL = 0, 1
 SAME_ANGLE = 1e-10
 """Angles closer than this are one point of a circle [rad]."""
+NEAR = 2.0
+"""With the discs that the path cuts come those nearer to it than this many radii: fewer rounds."""
 
 
 def shortest_path(start: Point, goal: Point, centres: Floats, radii: Floats) -> Path | None:
@@ -63,11 +65,12 @@ def shortest_path(start: Point, goal: Point, centres: Floats, radii: Floats) -> 
     path = graph.straight()
     waiting = sizes > 0.0
     while True:
-        cut = waiting & (path.clearance(graph.world) < sizes * (1.0 - TOUCH))
-        if not cut.any():
+        clearance = path.clearance(graph.world)
+        if not (waiting & (clearance < sizes * (1.0 - TOUCH))).any():
             return Path(path.length, path.points + origin, path.discs, path.sweeps, world, sizes)
-        waiting &= ~cut
-        graph.add(np.flatnonzero(cut))
+        near = waiting & (clearance < sizes * NEAR)
+        waiting &= ~near
+        graph.add(np.flatnonzero(near))
         found = graph.search()
         if found is None:
             return None
@@ -97,9 +100,11 @@ class _Graph:
         first, second = np.nonzero(np.arange(new)[:, None] < fresh)
         tangents = self._uncovered(common_tangents(first, fresh[second], self.centres, self.radii))
         tangents = tangents.take(unobstructed(tangents, every, self.centres[2:], inner[2:]))
-        kept = self._uncovered(self.tangents)
-        kept = kept.take(unobstructed(kept, fresh, self.centres[old:], inner[old:]))
-        self.tangents = kept.joined(tangents)
+        if len(self.tangents):
+            kept = self._uncovered(self.tangents)
+            kept = kept.take(unobstructed(kept, fresh, self.centres[old:], inner[old:]))
+            tangents = kept.joined(tangents)
+        self.tangents = tangents
 
     def _contained(self, discs: Ints) -> Bools:
         """Which of some discs of the world lie inside another of them or inside a disc of the graph."""
@@ -133,20 +138,22 @@ class _Graph:
         seeds = self.tangents.take(self.tangents.i == START)
         between = self.tangents.take(self.tangents.i > GOAL)
         final = self.tangents.take(self.tangents.i == GOAL).reversed()
-        flights = between.joined(between.reversed(), final)
         if not len(seeds) or not len(final):
             return None
-        group, offset = self._placed(flights.i, flights.sense_i, flights.angle_i)
-        order = np.argsort(group * STRIDE + offset, kind="stable")
-        flights, group, offset = flights.take(order), group[order], offset[order]
-        slides = _Slides(group, offset, self.radii[flights.i], group >= 2 * len(self.arcs.disc))
+        every = between.joined(between.reversed(), final, seeds)
+        last = len(every) - len(seeds)
+        group, offset = self._placed(every)
+        order = np.argsort(group[0, :last] * STRIDE + offset[0, :last], kind="stable")
+        order = np.concatenate([order, np.arange(last, len(every))])
+        every, group, offset = every.take(order), group[:, order], offset[:, order]
+        radius = self.radii[every.ends[:, [0, 2]].T]
+        circular = group[0, :last] >= 2 * len(self.arcs.disc)
+        slides = _Slides(group[0, :last], offset[0, :last], radius[0, :last], circular)
         after, slide = slides.after_departures()
-        every, last = flights.joined(seeds), len(flights)
-        place = self._placed(every.j, every.sense_j, every.angle_j)
-        landing, run = slides.after_arrivals(*place, self.radii[every.j])
+        landing, run = slides.after_arrivals(group[1], offset[1], radius[1])
         landing[every.j == GOAL] = last
         onward, cost = landing.tolist(), (every.length + run).tolist()
-        rest = np.hypot(*(flights.point - self.centres[GOAL]).T)
+        rest = np.hypot(*(every.point[:last] - self.centres[GOAL]).T)
         trail = _cheapest(
             (onward[last:], cost[last:]),
             (after.tolist(), slide.tolist()),
@@ -157,14 +164,20 @@ class _Graph:
             return None
         return self._path(every.take(np.array([last + trail[0], *trail[1:]])))
 
-    def _placed(self, disc: Ints, sense: Ints, angle: Floats) -> tuple[Ints, Floats]:
-        """Group (free arc and sense of rotation) of each point and its angle from the group's beginning."""
-        gap = self.arcs.gap(disc, angle)
+    def _placed(self, tangents: Tangents) -> tuple[Ints, Floats]:
+        """Where the tangents leave (row 0) and arrive (row 1), shape (2, t).
+
+        The group is one free arc in one sense of rotation; the offset is the angle from its beginning.
+        """
+        disc, sense = tangents.ends[:, [0, 2]].T, tangents.ends[:, [1, 3]].T
+        angle = tangents.lines[:, 5:7].T
+        if not len(self.arcs.disc):
+            return 2 * disc + (sense > 0), np.mod(sense * angle, TAU)
+        gap = self.arcs.gap(disc.ravel(), angle.ravel()).reshape(disc.shape)
         nowhere = np.zeros(len(self.radii))
         opening = np.concatenate([self.arcs.end, nowhere])[gap]
         closing = np.concatenate([self.arcs.begin[self.arcs.following], nowhere])[gap]
-        offset = np.mod(sense * (angle - np.where(sense > 0, opening, closing)), TAU)
-        return np.asarray(2 * gap + (sense > 0)), np.asarray(offset)
+        return 2 * gap + (sense > 0), np.mod(sense * (angle - np.where(sense > 0, opening, closing)), TAU)
 
     def _path(self, flown: Tangents) -> Path:
         """Path that flies some tangents in turn, with the arcs between."""
