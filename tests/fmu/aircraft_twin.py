@@ -37,14 +37,23 @@ class Twin:
 
     def coefficients(self, alpha, beta, rates, surfaces, airspeed):
         """CD, CY, CL and Cl, Cm, Cn as dot products of derivatives with what they multiply."""
-        p, q, r = np.asarray(rates) * [self["wing.span"], self["wing.chord"], self["wing.span"]] / (2 * airspeed)
+        p, q, r = (
+            np.asarray(rates) * [self["wing.span"], self["wing.chord"], self["wing.span"]] / (2 * airspeed)
+        )
         da, de, dr = surfaces
         held = np.clip(alpha, self["aero.alpha_min"], self["aero.alpha_max"])
-        plate = 2 * (math.sin(alpha) ** 2 - math.sin(held) ** 2)
+        plate = max(0.0, 2 * (math.sin(alpha) ** 2 - math.sin(held) ** 2))
         terms = {
             "CL": dict(zip(("0", "_alpha", "_alpha2", "_alpha3"), held ** np.arange(4), strict=True))
             | {"_q": q, "_elevator": de},
-            "CD": {"0": 1, "_alpha": held, "_alpha2": held**2, "_elevator2": de**2, "_beta": beta, "_beta2": beta**2},
+            "CD": {
+                "0": 1,
+                "_alpha": held,
+                "_alpha2": held**2,
+                "_elevator2": de**2,
+                "_beta": beta,
+                "_beta2": beta**2,
+            },
             "Cm": {"0": 1, "_alpha": alpha, "_q": q, "_elevator": de},
         }
         lateral = {"_beta": beta, "_p": p, "_r": r, "_aileron": da, "_rudder": dr}

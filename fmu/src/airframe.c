@@ -1,0 +1,214 @@
+/* Six degrees of freedom: flat earth, rigid body, quaternion attitude (Beard & McLain 2012, ch. 3-4;
+ * Stevens & Lewis 2003, 1.5 and 1.7), actuators as first-order lags with rate and position limits. */
+#include <math.h>
+
+#include "model.h"
+
+#define SLOWEST 1e-3 /* below this airspeed [m/s] the air does nothing */
+
+void inertia_constants(const Variables *v, InertiaConstants *k) {
+    double xx = v->aircraft_inertia_xx, yy = v->aircraft_inertia_yy;
+    double zz = v->aircraft_inertia_zz, xz = v->aircraft_inertia_xz;
+    double det = xx * zz - xz * xz;
+    k->c1 = ((yy - zz) * zz - xz * xz) / det;
+    k->c2 = (xx - yy + zz) * xz / det;
+    k->c3 = zz / det;
+    k->c4 = xz / det;
+    k->c5 = (zz - xx) / yy;
+    k->c6 = xz / yy;
+    k->c7 = 1.0 / yy;
+    k->c8 = (xx * (xx - yy) + xz * xz) / det;
+    k->c9 = xx / det;
+}
+
+/* Whether a rigid body can have this tensor: principal moments positive, none above the sum of the others. */
+bool inertia_is_real(const Variables *v) {
+    double xx = v->aircraft_inertia_xx, yy = v->aircraft_inertia_yy;
+    double zz = v->aircraft_inertia_zz, xz = v->aircraft_inertia_xz;
+    double mean = 0.5 * (xx + zz), half = sqrt(0.25 * (xx - zz) * (xx - zz) + xz * xz);
+    double small = mean - half, large = mean + half;
+    return small > 0.0 && large <= small + yy && yy <= small + large;
+}
+
+/* Lift coefficient without rates and elevator; held beyond the limits of the data. */
+double lift_coefficient(const Variables *v, double alpha, double *slope) {
+    double a = clamp(alpha, v->aircraft_aero_alpha_min, v->aircraft_aero_alpha_max);
+    double a1 = v->aircraft_aero_CL_alpha, a2 = v->aircraft_aero_CL_alpha2, a3 = v->aircraft_aero_CL_alpha3;
+    if (slope) *slope = a1 + a * (2.0 * a2 + 3.0 * a3 * a);
+    return v->aircraft_aero_CL0 + a * (a1 + a * (a2 + a * a3));
+}
+
+/* Drag coefficient. Beyond the limits of the data the drag of a flat plate is added: 2 sin2(alpha). */
+double drag_coefficient(const Variables *v, double alpha, double beta, double elevator) {
+    double a = clamp(alpha, v->aircraft_aero_alpha_min, v->aircraft_aero_alpha_max);
+    double plate = 0.0;
+    if (a != alpha) {
+        double s = sin(alpha), s0 = sin(a);
+        plate = s * s > s0 * s0 ? 2.0 * (s * s - s0 * s0) : 0.0; /* never a push, also flying backwards */
+    }
+    return v->aircraft_aero_CD0 + a * (v->aircraft_aero_CD_alpha + a * v->aircraft_aero_CD_alpha2) + plate
+        + v->aircraft_aero_CD_elevator2 * elevator * elevator
+        + beta * (v->aircraft_aero_CD_beta + beta * v->aircraft_aero_CD_beta2);
+}
+
+/* Rows are north, east, down; columns the body axes (Beard & McLain B.1). */
+static void rotation(const double q[4], double R[9]) {
+    double w = q[0], x = q[1], y = q[2], z = q[3];
+    R[0] = 1.0 - 2.0 * (y * y + z * z), R[1] = 2.0 * (x * y - w * z), R[2] = 2.0 * (x * z + w * y);
+    R[3] = 2.0 * (x * y + w * z), R[4] = 1.0 - 2.0 * (x * x + z * z), R[5] = 2.0 * (y * z - w * x);
+    R[6] = 2.0 * (x * z - w * y), R[7] = 2.0 * (y * z + w * x), R[8] = 1.0 - 2.0 * (x * x + y * y);
+}
+
+static void rotate(const double R[9], const double b[3], double ned[3]) {
+    for (int i = 0; i < 3; i++) ned[i] = R[3 * i] * b[0] + R[3 * i + 1] * b[1] + R[3 * i + 2] * b[2];
+}
+
+static void rotate_back(const double R[9], const double n[3], double b[3]) {
+    for (int i = 0; i < 3; i++) b[i] = R[i] * n[0] + R[3 + i] * n[1] + R[6 + i] * n[2];
+}
+
+void body_from_ground(const double q[4], const double n[3], double b[3]) {
+    double R[9];
+    rotation(q, R);
+    rotate_back(R, n, b);
+}
+
+void quaternion_from_euler(double bank, double pitch, double heading, double q[4]) {
+    double cr = cos(0.5 * bank), sr = sin(0.5 * bank);
+    double cp = cos(0.5 * pitch), sp = sin(0.5 * pitch);
+    double cy = cos(0.5 * heading), sy = sin(0.5 * heading);
+    q[0] = cr * cp * cy + sr * sp * sy;
+    q[1] = sr * cp * cy - cr * sp * sy;
+    q[2] = cr * sp * cy + sr * cp * sy;
+    q[3] = cr * cp * sy - sr * sp * cy;
+}
+
+/* Forces and moments of air and engine on the body. */
+static void airframe_loads(const Model *m, const double x[], const double R[9], Loads *loads) {
+    const Variables *v = &m->v;
+    double wind_ned[3] = {v->wind_north, v->wind_east, v->wind_down}, wind[3];
+    rotate_back(R, wind_ned, wind);
+    double u = x[X_U] - wind[0], side = x[X_V] - wind[1], w = x[X_W] - wind[2];
+    double airspeed = sqrt(u * u + side * side + w * w);
+    *loads = (Loads){.airspeed = airspeed};
+    loads->thrust = thrust(v, x[X_THROTTLE], airspeed, m->density);
+    loads->force[0] = loads->thrust;
+    if (airspeed < SLOWEST) return;
+
+    double per_airspeed = 1.0 / airspeed;
+    double alpha = atan2(w, u), beta = asin(clamp(side * per_airspeed, -1.0, 1.0));
+    loads->alpha = alpha;
+    loads->beta = beta;
+    loads->stalled = alpha < v->aircraft_aero_alpha_min || alpha > v->aircraft_aero_alpha_max;
+
+    double span = v->aircraft_wing_span, chord = v->aircraft_wing_chord;
+    double half_span = 0.5 * span * per_airspeed, half_chord = 0.5 * chord * per_airspeed;
+    double p = x[X_P] * half_span, r = x[X_R] * half_span, q = x[X_Q] * half_chord; /* nondimensional */
+    double da = x[X_AILERON], de = x[X_ELEVATOR], dr = x[X_RUDDER];
+    double CL = lift_coefficient(v, alpha, 0) + v->aircraft_aero_CL_q * q + v->aircraft_aero_CL_elevator * de;
+    double CD = drag_coefficient(v, alpha, beta, de);
+    double CY = v->aircraft_aero_CY_beta * beta + v->aircraft_aero_CY_p * p + v->aircraft_aero_CY_r * r
+        + v->aircraft_aero_CY_aileron * da + v->aircraft_aero_CY_rudder * dr;
+    double Cl = v->aircraft_aero_Cl_beta * beta + v->aircraft_aero_Cl_p * p + v->aircraft_aero_Cl_r * r
+        + v->aircraft_aero_Cl_aileron * da + v->aircraft_aero_Cl_rudder * dr;
+    double Cm = v->aircraft_aero_Cm0 + v->aircraft_aero_Cm_alpha * alpha + v->aircraft_aero_Cm_q * q
+        + v->aircraft_aero_Cm_elevator * de;
+    double Cn = v->aircraft_aero_Cn_beta * beta + v->aircraft_aero_Cn_p * p + v->aircraft_aero_Cn_r * r
+        + v->aircraft_aero_Cn_aileron * da + v->aircraft_aero_Cn_rudder * dr;
+
+    double pressure_area = 0.5 * m->density * airspeed * airspeed * v->aircraft_wing_area;
+    double in_plane = sqrt(u * u + w * w);
+    double per_plane = in_plane > 0.0 ? 1.0 / in_plane : 0.0, ca = u * per_plane, sa = w * per_plane;
+    loads->force[0] += pressure_area * (CL * sa - CD * ca);
+    loads->force[1] = pressure_area * CY;
+    loads->force[2] = pressure_area * (-CL * ca - CD * sa);
+    loads->moment[0] = pressure_area * span * Cl;
+    loads->moment[1] = pressure_area * chord * Cm;
+    loads->moment[2] = pressure_area * span * Cn;
+}
+
+static double lag(double command, double position, double low, double high, double per_time, double rate) {
+    return clamp((clamp(command, low, high) - position) * per_time, -rate, rate);
+}
+
+void airframe_derivative(const Model *m, const double x[], double dx[], Loads *loads) {
+    const Variables *v = &m->v;
+    double R[9], ned[3];
+    rotation(x + X_Q0, R);
+    airframe_loads(m, x, R, loads);
+    rotate(R, x + X_U, ned);
+    dx[X_NORTH] = ned[0];
+    dx[X_EAST] = ned[1];
+    dx[X_ALTITUDE] = -ned[2];
+
+    double gravity = v->environment_gravity;
+    double g[3] = {gravity * R[6], gravity * R[7], gravity * R[8]};
+    double p = x[X_P], q = x[X_Q], r = x[X_R];
+    double per_mass = 1.0 / v->aircraft_mass;
+    dx[X_U] = r * x[X_V] - q * x[X_W] + g[0] + loads->force[0] * per_mass;
+    dx[X_V] = p * x[X_W] - r * x[X_U] + g[1] + loads->force[1] * per_mass;
+    dx[X_W] = q * x[X_U] - p * x[X_V] + g[2] + loads->force[2] * per_mass;
+
+    const double *e = x + X_Q0;
+    dx[X_Q0] = 0.5 * (-e[1] * p - e[2] * q - e[3] * r);
+    dx[X_Q1] = 0.5 * (e[0] * p + e[2] * r - e[3] * q);
+    dx[X_Q2] = 0.5 * (e[0] * q - e[1] * r + e[3] * p);
+    dx[X_Q3] = 0.5 * (e[0] * r + e[1] * q - e[2] * p);
+
+    const InertiaConstants *k = &m->inertia;
+    const double *moment = loads->moment;
+    dx[X_P] = (k->c1 * r + k->c2 * p) * q + k->c3 * moment[0] + k->c4 * moment[2];
+    dx[X_Q] = k->c5 * p * r - k->c6 * (p * p - r * r) + k->c7 * moment[1];
+    dx[X_R] = (k->c8 * p - k->c2 * r) * q + k->c4 * moment[0] + k->c9 * moment[2];
+
+    double per_time = 1.0 / v->aircraft_actuator_surface_time, rate = v->aircraft_actuator_surface_rate;
+    double a = v->aircraft_actuator_aileron_limit, el = v->aircraft_actuator_elevator_limit;
+    double ru = v->aircraft_actuator_rudder_limit;
+    dx[X_AILERON] = lag(m->actuator[0], x[X_AILERON], -a, a, per_time, rate);
+    dx[X_ELEVATOR] = lag(m->actuator[1], x[X_ELEVATOR], -el, el, per_time, rate);
+    dx[X_RUDDER] = lag(m->actuator[2], x[X_RUDDER], -ru, ru, per_time, rate);
+    dx[X_THROTTLE] = lag(m->actuator[3], x[X_THROTTLE], 0.0, 1.0, 1.0 / v->aircraft_actuator_throttle_time,
+                         v->aircraft_actuator_throttle_rate);
+}
+
+/* One Runge-Kutta step of order four; the quaternion is brought back to unit length. */
+void airframe_advance(Model *m, double h) {
+    double k[N_STATES], sum[N_STATES], at[N_STATES];
+    Loads loads;
+    double *x = m->x;
+    airframe_derivative(m, x, k, &loads);
+    for (int i = 0; i < N_STATES; i++) { sum[i] = k[i]; at[i] = x[i] + 0.5 * h * k[i]; }
+    airframe_derivative(m, at, k, &loads);
+    for (int i = 0; i < N_STATES; i++) { sum[i] += 2.0 * k[i]; at[i] = x[i] + 0.5 * h * k[i]; }
+    airframe_derivative(m, at, k, &loads);
+    for (int i = 0; i < N_STATES; i++) { sum[i] += 2.0 * k[i]; at[i] = x[i] + h * k[i]; }
+    airframe_derivative(m, at, k, &loads);
+    for (int i = 0; i < N_STATES; i++) x[i] += h / 6.0 * (sum[i] + k[i]);
+    double *e = x + X_Q0;
+    double scale = 1.0 / sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3]);
+    for (int i = 0; i < 4; i++) e[i] *= scale;
+}
+
+void airframe_motion(const Model *m, Motion *o) {
+    const double *x = m->x, *e = x + X_Q0;
+    double R[9], ned[3], wind_ned[3] = {m->v.wind_north, m->v.wind_east, m->v.wind_down}, wind[3];
+    rotation(e, R);
+    rotate(R, x + X_U, ned);
+    rotate_back(R, wind_ned, wind);
+    double u = x[X_U] - wind[0], side = x[X_V] - wind[1], w = x[X_W] - wind[2];
+    o->north = x[X_NORTH];
+    o->east = x[X_EAST];
+    o->altitude = x[X_ALTITUDE];
+    o->velocity_north = ned[0];
+    o->velocity_east = ned[1];
+    o->climb = -ned[2];
+    o->airspeed = sqrt(u * u + side * side + w * w);
+    o->alpha = o->airspeed > SLOWEST ? atan2(w, u) : 0.0;
+    o->beta = o->airspeed > SLOWEST ? asin(clamp(side / o->airspeed, -1.0, 1.0)) : 0.0;
+    o->bank = atan2(2.0 * (e[0] * e[1] + e[2] * e[3]), 1.0 - 2.0 * (e[1] * e[1] + e[2] * e[2]));
+    o->pitch = asin(clamp(2.0 * (e[0] * e[2] - e[1] * e[3]), -1.0, 1.0));
+    o->heading = atan2(2.0 * (e[0] * e[3] + e[1] * e[2]), 1.0 - 2.0 * (e[2] * e[2] + e[3] * e[3]));
+    o->p = x[X_P];
+    o->q = x[X_Q];
+    o->r = x[X_R];
+}

@@ -1,0 +1,28 @@
+/* Propeller: throttle (0..1) to thrust along the body's forward axis, and back. */
+#include <math.h>
+
+#include "model.h"
+
+/* Thrust [N].
+ * Disc: T = 1/2 rho S C Vd (Vd - Va), Vd = Va + throttle (k - Va) (Fitzpatrick 2013, Eqs. 4-6).
+ * Linear: T = throttle * Tmax. */
+double thrust(const Variables *v, double throttle, double airspeed, double density) {
+    if (v->aircraft_propulsion_model == PROPULSION_LINEAR) return throttle * v->aircraft_propulsion_max_thrust;
+    double added = throttle * (v->aircraft_propulsion_motor_speed - airspeed);
+    double disc = v->aircraft_propulsion_disc_area * v->aircraft_propulsion_coefficient;
+    return 0.5 * density * disc * (airspeed + added) * added;
+}
+
+/* Throttle that gives a thrust, within 0..1. */
+double throttle_for(const Variables *v, double thrust_wanted, double airspeed, double density) {
+    if (thrust_wanted <= 0.0) return 0.0;
+    if (v->aircraft_propulsion_model == PROPULSION_LINEAR) {
+        double most = v->aircraft_propulsion_max_thrust;
+        return most > thrust_wanted ? thrust_wanted / most : 1.0;
+    }
+    double disc = v->aircraft_propulsion_disc_area * v->aircraft_propulsion_coefficient;
+    double room = v->aircraft_propulsion_motor_speed - airspeed;
+    if (disc <= 0.0 || room <= 0.0) return 1.0;
+    double slipstream = 0.5 * (airspeed + sqrt(airspeed * airspeed + 8.0 * thrust_wanted / (density * disc)));
+    return clamp((slipstream - airspeed) / room, 0.0, 1.0);
+}
