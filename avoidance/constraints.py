@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from avoidance.flown import turn_angle
-from avoidance.geometry import segments_clearance
+from avoidance.geometry import distances, segments_clearance
 from avoidance.types import Floats
 
 
@@ -34,9 +34,7 @@ def safe_waypoint(points: Floats, centres: Floats, required: Floats) -> Floats:
     """
     if not len(centres):
         return np.zeros(len(points))
-    distance = np.hypot(
-        points[:, None, 0] - centres[None, :, 0], points[:, None, 1] - centres[None, :, 1]
-    )
+    distance = distances(points, centres)
     return np.asarray(np.maximum((required - distance).max(axis=1), 0.0))
 
 
@@ -61,9 +59,7 @@ def search_space(points: Floats, members: Floats, limit: float) -> Floats:
     """
     if not len(members):
         return np.zeros(len(points))
-    distance = np.hypot(
-        points[:, None, 0] - members[None, :, 0], points[:, None, 1] - members[None, :, 1]
-    )
+    distance = distances(points, members)
     return np.asarray(np.maximum(distance.min(axis=1) - limit, 0.0))
 
 

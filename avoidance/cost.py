@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from avoidance.geometry import distances
 from avoidance.types import Floats
 
 
@@ -57,9 +58,7 @@ def risk(points: Floats, centres: Floats, risk_distance: float, squared_metres: 
     """
     if not len(centres):
         return np.zeros(len(points))
-    distance = np.hypot(
-        points[:, None, 0] - centres[None, :, 0], points[:, None, 1] - centres[None, :, 1]
-    )
+    distance = distances(points, centres)
     intrusion = np.maximum(risk_distance - distance, 0.0)
     if squared_metres:
         return np.asarray(intrusion.sum(axis=1) ** 2)

@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from avoidance.types import Bools, Floats, Performance
+from avoidance.types import Complexes, Floats, Performance
 
 EITHER_SIDE = math.radians(10.0)
 """Within this of a reversal a turn may go either way [rad]."""
@@ -49,27 +49,38 @@ def flown_segments(
     of the incoming leg, and from there to the exit point. After a change of target the turn begins where the vehicle is: it
     runs on by R tan(dchi/2) plus the roll distance and joins the leg from outside.
     """
-    legs = np.diff(points, axis=1)
-    lengths = np.hypot(legs[..., 0], legs[..., 1])
-    units = legs / np.maximum(lengths, 1e-9)[..., None]
-    starts = [points[:, :-1]]
-    ends = [points[:, 1:]]
-    extra = [np.zeros(lengths.shape)]
+    corners = as_complex(points)
+    legs = corners[:, 1:] - corners[:, :-1]
+    lengths = np.abs(legs)
+    units = legs / np.maximum(lengths, 1e-9)
+    starts, ends, extra = [corners[:, :-1]], [corners[:, 1:]], [np.zeros(lengths.shape)]
     if points.shape[1] > 2:
         run = performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
-        before = np.minimum(run, lengths[:, :-1])
-        entry = points[:, 1:-1] - before[..., None] * units[:, :-1]
-        exit_ = points[:, 1:-1] + np.minimum(performance.capture_distance, lengths[:, 1:])[..., None] * units[:, 1:]
-        centre, room, sharp = _turning_circle(entry, units[:, :-1], units[:, 1:], performance)
-        starts.append(np.where(sharp[..., None], centre, entry))
-        ends.append(exit_)
+        entry = corners[:, 1:-1] - np.minimum(run, lengths[:, :-1]) * units[:, :-1]
+        begin, room, _ = _turn(entry, units[:, :-1], units[:, 1:], performance)
+        starts.append(begin)
+        ends.append(corners[:, 1:-1] + np.minimum(performance.capture_distance, lengths[:, 1:]) * units[:, 1:])
         extra.append(room)
     if course is not None:
-        begin = _first_turn(points[:, 0], units[:, 0], lengths[:, 0], course, performance)
-        starts.append(begin[0])
-        ends.append(begin[1])
-        extra.append(begin[2])
-    return np.concatenate(starts, axis=1), np.concatenate(ends, axis=1), np.concatenate(extra, axis=1)
+        first = _first_turn(corners[:, :1], units[:, :1], lengths[:, :1], course, performance)
+        starts.append(first[0])
+        ends.append(first[1])
+        extra.append(first[2])
+    return (
+        _as_pairs(np.concatenate(starts, axis=1)),
+        _as_pairs(np.concatenate(ends, axis=1)),
+        np.concatenate(extra, axis=1),
+    )
+
+
+def as_complex(points: Floats) -> Complexes:
+    """Points of shape (..., 2) as north + i east, shape (...): the dot and cross product of a and b are the
+    real and the imaginary part of conj(a) b."""
+    return np.ascontiguousarray(points).view(np.complex128)[..., 0]
+
+
+def _as_pairs(values: Complexes) -> Floats:
+    return np.ascontiguousarray(values)[..., None].view(np.float64)
 
 
 def turn_angle(first: Floats, second: Floats) -> Floats:
@@ -80,43 +91,43 @@ def turn_angle(first: Floats, second: Floats) -> Floats:
     return angle
 
 
-def _turning_circle(
-    entry: Floats, first: Floats, second: Floats, performance: Performance
-) -> tuple[Floats, Floats, Bools]:
-    """Centre of a turn through more than 90 degrees, the room about it, and where a turn is that sharp.
+def _turn(
+    entry: Complexes, first: Complexes, second: Complexes, performance: Performance
+) -> tuple[Complexes, Floats, Complexes]:
+    """Where the segment that encloses a turn begins, the room about it, and the product of the directions.
 
-    The vehicle rolls in from the entry point and turns to the side of the new direction; near a reversal
-    it may turn to either side, and the room is two turn radii about the entry instead of one about the
-    circle's centre.
+    Up to 90 degrees that is the entry point. Beyond, the vehicle rolls in from there and turns to the side
+    of the new direction, one turn radius about the centre of its circle; near a reversal it may turn to
+    either side, two turn radii about the entry.
     """
-    dot = first[..., 0] * second[..., 0] + first[..., 1] * second[..., 1]
-    cross = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
-    sharp = dot < 0.0
-    either = dot < -math.cos(EITHER_SIDE)
-    radius = performance.turn_radius
-    side = np.where(either, 0.0, np.sign(cross))
-    normal = np.stack([-first[..., 1], first[..., 0]], axis=-1)
-    roll_in = performance.airspeed * performance.roll_time
-    centre = entry + roll_in * first + (side * radius)[..., None] * normal
-    room = np.where(sharp, np.where(either, 2.0, 1.0) * radius, 0.0)
-    return centre, room, sharp
+    product = np.conj(first) * second
+    room = np.zeros(product.shape)
+    sharp = product.real < 0.0
+    if sharp.any():
+        radius = performance.turn_radius
+        either = product.real < -math.cos(EITHER_SIDE)
+        side = np.where(either, 0.0, np.sign(product.imag))
+        centre = entry + (performance.airspeed * performance.roll_time + 1j * side * radius) * first
+        room = np.where(sharp, np.where(either, 2.0 * radius, radius), 0.0)
+        entry = np.where(sharp, centre, entry)
+    return entry, room, product
 
 
 def _first_turn(
-    start: Floats, unit: Floats, length: Floats, course: float, performance: Performance
-) -> tuple[Floats, Floats, Floats]:
-    """The turn on to the first leg from the present course: two segments for each polyline."""
-    ahead = np.broadcast_to(np.array([math.cos(course), math.sin(course)]), unit.shape)
-    angle = turn_angle(ahead, unit)
-    run = performance.airspeed * (performance.roll_time + SEQUENCING_DELAY)
-    centre, room, sharp = _turning_circle(
-        start + SEQUENCING_DELAY * performance.airspeed * ahead, ahead, unit, performance
+    start: Complexes, unit: Complexes, length: Floats, course: float, performance: Performance
+) -> tuple[Complexes, Complexes, Floats]:
+    """The turn on to the first leg from the present course: two segments for each polyline, (n, 2)."""
+    ahead = np.full_like(unit, complex(math.cos(course), math.sin(course)))
+    delay = SEQUENCING_DELAY * performance.airspeed
+    begin, room, product = _turn(start + delay * ahead, ahead, unit, performance)
+    sharp = product.real < 0.0
+    angle = np.abs(np.angle(product))
+    reach = performance.turn_radius * np.tan(0.5 * np.where(sharp, 0.0, angle))
+    reach += delay + performance.airspeed * performance.roll_time
+    turn = start + np.where(angle < 1e-3, 0.0, reach) * ahead
+    joins = np.where(sharp, start, turn) + np.minimum(performance.capture_distance, length) * unit
+    return (
+        np.concatenate([start, np.where(sharp, begin, turn)], axis=1),
+        np.concatenate([turn, joins], axis=1),
+        np.concatenate([np.zeros_like(room), room], axis=1),
     )
-    reach = run + performance.turn_radius * np.tan(0.5 * np.where(sharp, 0.0, angle))
-    reach = np.where(angle < 1e-3, 0.0, reach)
-    turn = start + reach[..., None] * ahead
-    capture = np.minimum(performance.capture_distance, length)[..., None] * unit
-    joins = np.where(sharp[..., None], start + capture, turn + capture)
-    starts = np.stack([start, np.where(sharp[..., None], centre, turn)], axis=1)
-    ends = np.stack([turn, joins], axis=1)
-    return starts, ends, np.stack([np.zeros_like(room), room], axis=1)

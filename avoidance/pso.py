@@ -56,7 +56,7 @@ class Pso:
     @property
     def best(self) -> Floats:
         """Best point so far, shape (2,) [m]."""
-        return self._best
+        return np.asarray(self._best)
 
     @property
     def best_cost(self) -> float:

@@ -20,6 +20,7 @@ GRAVITY = 9.81
 """Standard gravity as the paper uses it [m/s²] (Eqs. 13-14)."""
 
 Floats: TypeAlias = NDArray[np.float64]
+Complexes: TypeAlias = NDArray[np.complex128]
 Ints: TypeAlias = NDArray[np.int64]
 Bools: TypeAlias = NDArray[np.bool_]
 

@@ -80,6 +80,24 @@ def test_each_hole_of_a_lattice_is_a_pocket(spacing) -> None:
     assert len({space.component(hole) for hole in [*holes, FAR]}) == 17
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_within_a_hole_of_repeated_discs_all_points_are_connected(seed) -> None:
+    """Discs three times each in any order: whichever of the equal ones faces a point, the hole is one."""
+    grid = np.array([(n, e) for n in range(4) for e in range(4)], dtype=float) * 1_000.0
+    centres = np.random.default_rng(seed).permutation(np.concatenate([grid, grid, grid]))
+    radii = np.full(48, 650.0)
+    sides = [(20.0, 20.0), (20.0, -20.0), (-20.0, 20.0), (-20.0, -20.0), (0.0, 0.0)]
+
+    space = FreeSpace.of(centres, radii)
+
+    names = {
+        hole: {space.component((500.0 + hole * 1_000.0 + n, 1_500.0 + e)) for n, e in sides}
+        for hole in range(3)
+    }
+    assert all(len(name) == 1 for name in names.values())
+    assert len(set.union(*names.values(), {space.component(FAR)})) == 4
+
+
 def test_points_on_a_circle_or_on_a_corner_count_as_free() -> None:
     centres, radii = ring(8, 4_000.0, 1_700.0)
     corner_distance = 4_000.0 * math.cos(math.pi / 8) - math.sqrt(

@@ -66,6 +66,19 @@ def test_one_disc_on_the_line_has_the_textbook_length() -> None:
     assert path.length == pytest.approx(8_000.0 + 3_000.0 * (math.pi - 2.0 * math.acos(0.6)), abs=1e-9)
 
 
+def test_arc_over_the_north_of_a_disc() -> None:
+    """From west to east round a disc whose north side is the shorter one."""
+    centres, radii = np.array([(-100.0, 0.0), (4_000.0, 300.0)]), np.array([1_000.0, 500.0])
+
+    path = shortest_path((0.0, -5_000.0), (0.0, 5_000.0), centres, radii)
+
+    span = math.hypot(5_000.0, 100.0)
+    tangent = math.sqrt(span**2 - 1_000.0**2)
+    turned = 2.0 * (math.atan2(5_000.0, 100.0) - math.acos(1_000.0 / span))
+    assert path.length == pytest.approx(2.0 * tangent + 1_000.0 * turned, abs=1e-9)
+    assert path.sweeps[1] == pytest.approx(turned)
+
+
 def test_no_discs_and_no_distance() -> None:
     none = np.empty((0, 2)), np.empty(0)
 
@@ -288,6 +301,30 @@ def test_length_does_not_depend_on_how_the_world_is_laid(world, angle, north, ea
     assert (first is None) == (second is None)
     if first is not None:
         assert second.length == pytest.approx(first.length, rel=1e-7)
+
+
+def test_turning_the_world_step_by_step_leaves_the_length() -> None:
+    """Discs apart from one another: arcs come to lie over north, where angles begin again."""
+    rng = np.random.default_rng(8)
+    grid = np.stack(np.meshgrid(*[np.arange(-3, 4) * 2_000.0] * 2), axis=-1).reshape(-1, 2)
+    centres = grid + rng.uniform(-250.0, 250.0, grid.shape)
+    radii = rng.uniform(550.0, 740.0, len(grid))
+    north = 0
+
+    lengths = []
+    for angle in np.radians(np.arange(0.0, 360.0, 2.5)):
+        turn = np.array([(math.cos(angle), math.sin(angle)), (-math.sin(angle), math.cos(angle))])
+        start, goal = np.array([(-9_000.0, 300.0), (9_000.0, -200.0)]) @ turn
+        path = shortest_path(start, goal, centres @ turn, radii)
+        lengths.append(path.length)
+        arms = path.points[:-1] - (centres @ turn)[path.discs]
+        last = np.arctan2(arms[:, 1], arms[:, 0]) + path.sweeps
+        north += int(
+            ((path.discs >= 0) & (np.sign(last) != np.sign(last - path.sweeps)) & (abs(last) < 1)).sum()
+        )
+
+    np.testing.assert_allclose(lengths, lengths[0], rtol=1e-10)
+    assert north > 5, "some arcs must have passed over north"
 
 
 @settings(max_examples=50, deadline=None)
