@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -99,6 +100,7 @@ class Tracker:
         self._misses = np.empty(0, dtype=np.int64)
         self._seen = np.empty(0)
         self._moving = np.empty(0, dtype=np.bool_)
+        self._settled = False  # nothing moves and every track is confirmed
         self._picture: Picture | None = None
 
     def update(self, scan: RadarScan, own: Ownship) -> Picture:
@@ -112,7 +114,8 @@ class Tracker:
         step = scan.time - self._time
         self._time = scan.time
         if self._picture is not None and self._undisturbed(scan):
-            self._seen[self._last_rows] = scan.time
+            if len(scan.ids):
+                self._seen[self._last_rows] = scan.time
             return self._picture
         self._predict(step)
         rows = self._associate(scan, own)
@@ -124,12 +127,10 @@ class Tracker:
     def _undisturbed(self, scan: RadarScan) -> bool:
         """True if the scan repeats exactly what is known: the same still obstacles at the same places."""
         rows = self._last_rows
-        return (
-            len(rows) == len(scan.ids)
-            and np.array_equal(scan.ids, self._last_ids)
-            and not self._moving.any()
-            and bool((self._hits >= CONFIRMING_HITS).all())
-            and np.array_equal(scan.positions, self._mean[rows])
+        if not self._settled or len(rows) != len(scan.ids):
+            return False
+        return not len(rows) or (
+            np.array_equal(scan.ids, self._last_ids) and np.array_equal(scan.positions, self._mean[rows])
         )
 
     def _predict(self, step: float) -> None:
@@ -245,6 +246,7 @@ class Tracker:
     def _publish(self) -> Picture:
         before = self._picture
         moving = self._moving
+        self._settled = not moving.any() and bool((self._hits >= CONFIRMING_HITS).all())
         positions = np.where(moving[:, None], self._position, self._mean)
         confirmed = self._hits >= CONFIRMING_HITS
         sigma = np.where(moving, np.sqrt(self._p11), np.sqrt(1.0 / np.maximum(self._weight, 1e-12)))
@@ -342,9 +344,9 @@ def clusters(positions: Floats, radii: Floats, link_distance: float, join_sphere
 
 def _usable(scan: RadarScan) -> RadarScan:
     """The contacts of a scan whose position is finite."""
-    good = np.isfinite(scan.positions).all(axis=1)
-    if good.all():
+    if not len(scan.ids) or math.isfinite(float(scan.positions.sum())):
         return scan
+    good = np.isfinite(scan.positions).all(axis=1)
     return RadarScan(scan.time, scan.ids[good], scan.positions[good], scan.radii[good])
 
 

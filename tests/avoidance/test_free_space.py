@@ -98,6 +98,26 @@ def test_within_a_hole_of_repeated_discs_all_points_are_connected(seed) -> None:
     assert len(set.union(*names.values(), {space.component(FAR)})) == 4
 
 
+@pytest.mark.parametrize("seed", range(10))
+def test_three_circles_through_each_corner_of_a_pocket(seed) -> None:
+    """Rounding says at random which of two discs a gap ends at; the pocket must stay one all the same."""
+    half, turn = math.pi / 8, 0.1 * seed
+    centres, radii = ring(8, 4_000.0, 1_700.0)
+    corner = 4_000.0 * math.cos(half) - math.sqrt(1_700.0**2 - (4_000.0 * math.sin(half)) ** 2)
+    extra, _ = ring(8, corner + 1_700.0, 1_700.0)
+    extra = extra @ np.array([(math.cos(half), math.sin(half)), (-math.sin(half), math.cos(half))])
+    order = np.random.default_rng(seed).permutation(16)
+    rotation = np.array([(math.cos(turn), math.sin(turn)), (-math.sin(turn), math.cos(turn))])
+    world = (np.concatenate([centres, extra]) @ rotation)[order], np.full(16, 1_700.0)
+    inside = ring(24, 2_200.0, 0.0)[0] @ rotation
+
+    space = FreeSpace.of(*world)
+
+    assert len({space.component(spot) for spot in inside}) == 1
+    assert not any(space.unbounded(spot) for spot in inside)
+    assert space.unbounded(FAR)
+
+
 def test_points_on_a_circle_or_on_a_corner_count_as_free() -> None:
     centres, radii = ring(8, 4_000.0, 1_700.0)
     corner_distance = 4_000.0 * math.cos(math.pi / 8) - math.sqrt(

@@ -79,6 +79,21 @@ def test_arc_over_the_north_of_a_disc() -> None:
     assert path.sweeps[1] == pytest.approx(turned)
 
 
+@pytest.mark.parametrize("angle_deg", [0.0, 90.0, 180.0, 270.0])
+def test_arc_over_north_past_the_start_of_another_tangent(angle_deg) -> None:
+    """Over one disc and under the next: the tangent to the top of the next begins before north."""
+    angle = math.radians(angle_deg)
+    turn = np.array([(math.cos(angle), math.sin(angle)), (-math.sin(angle), math.cos(angle))])
+    centres, radii = np.array([(-100.0, 0.0), (600.0, 3_000.0)]), np.array([1_000.0, 500.0])
+    start, goal = np.array([(0.0, -5_000.0), (0.0, 5_000.0)]) @ turn
+
+    path = shortest_path(start, goal, centres @ turn, radii)
+
+    assert path.discs.tolist() == [-1, 0, -1, 1, -1]
+    assert path.sweeps[1] > 0.0 > path.sweeps[3]
+    assert path.length == pytest.approx(shortest_path(goal, start, centres @ turn, radii).length, abs=1e-9)
+
+
 def test_no_discs_and_no_distance() -> None:
     none = np.empty((0, 2)), np.empty(0)
 

@@ -68,21 +68,23 @@ def test_everything_survives_writing():
     start_time_utc = 2021-06-01T12:00:00+02:00
     time_limit_s = 5000.0
     obstacles = [{id = 7, latitude_deg = 14.45, longitude_deg = 76.6, kind = "mast", appears_at_s = 30.0}]
-    traffic = [
-        {speed_m_s = 40.0, motion = "point", violation_radius_m = 500.0, starts_at_s = 1.0,
-         waypoints = [{north_m = 9000.0, east_m = 1.5}, {north_m = 0.0, east_m = 3.0, altitude_m = 150.0}]},
-    ]
     wind = {north_m_s = 3.0, east_m_s = -4.0}
     radar = {range_m = 8000.0, range_noise_m = 50.0, bearing_noise_deg = 1.0, field_of_view_deg = 120.0}
     vehicle = {fidelity = "kinematic", airspeed_m_s = 16.0, acceptance_radius_m = 50.0, heading_deg = 20.0}
     random = {count = 3}
+    [[traffic]]
+    speed_m_s = 40.0
+    motion = "point"
+    violation_radius_m = 500.0
+    starts_at_s = 1.0
+    waypoints = [{north_m = 9000.0, east_m = 1.5}, {north_m = 0.0, east_m = 3.0, altitude_m = 150.0}]
     """
     scenario = parse(text + MISSION)
     assert parse(to_toml(scenario)) == scenario
     drawn = scatter(scenario, streams(1)["world"])
     assert parse(to_toml(drawn)) == drawn
     assert scenario.start_time_utc.isoformat() == "2021-06-01T10:00:00+00:00"
-    assert {o.id for o in drawn.obstacles} == {1 + 1, 3, 4, 7}  # 7 was given, 1 went to the traffic
+    assert {o.id for o in drawn.obstacles} == {2, 3, 4, 7}  # 7 was given, and 1 went to the traffic
 
 
 def test_defaults_are_enough_for_a_bare_mission():
@@ -127,7 +129,7 @@ def test_obstacles_without_altitude_stand_at_the_mission_s():
         ("obstacles = [{id = 1, north_m = 5e3, east_m = 0}, {id = 1, north_m = 5e3, east_m = 9}]", "twice"),
         ("traffic = [{waypoints = [{north_m = 1, east_m = 1}]}]", "has 1 entries and needs at least 2"),
         (
-            "traffic = [{speed_m_s = 60, waypoints = [{north_m = 1, east_m = 1}, {north_m = 9, east_m = 9}]}]",
+            "traffic = [{speed_m_s = 60, waypoints = [{north_m = 1, east_m = 0}, {north_m = 9, east_m=0}]}]",
             'unless motion = "point"',
         ),
     ],

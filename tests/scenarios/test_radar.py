@@ -6,17 +6,15 @@ import math
 
 import numpy as np
 import pytest
-from flyers import StraightFlyer
 
 from scenarios.radar import FIRST_FALSE_ID, SimulatedRadar
 from scenarios.scenario import Obstacle, RadarSettings
 from scenarios.world import World
+from tests.scenarios.flyers import StraightFlyer
 
 
 def radar_and_state(places, flyer=None, **settings):
-    obstacles = [
-        Obstacle(k, n, e, 200.0, 1000.0 + k) for k, (n, e) in enumerate(places, start=1)
-    ]
+    obstacles = [Obstacle(k, n, e, 200.0, 1000.0 + k) for k, (n, e) in enumerate(places, start=1)]
     flyer = flyer or StraightFlyer()
     world = World(obstacles, {"own": flyer})
     return SimulatedRadar(world, RadarSettings(**settings), np.random.default_rng(1)), flyer, world
@@ -87,3 +85,11 @@ def test_scans_are_read_only():
     radar, flyer, _ = radar_and_state([(6000.0, 0.0)], range_noise=1.0)
     with pytest.raises(ValueError, match="read-only"):
         radar.scan(flyer.state(), 0.0).positions[0, 0] = 0.0
+
+
+def test_what_comes_into_range_is_seen_on_the_first_scan_that_can():
+    radar, flyer, world = radar_and_state([(12_000.0, 50.0), (30_000.0, 0.0)])
+    while world.now < 1500.0:
+        in_range = np.hypot(np.array([12_000.0, 30_000.0]) - flyer.north, (50.0, 0.0)) <= 10_000.0
+        assert radar.scan(flyer.state(), world.now).ids.tolist() == (np.flatnonzero(in_range) + 1).tolist()
+        world.advance(1.0)

@@ -6,14 +6,16 @@ import math
 
 import numpy as np
 import pytest
-from flyers import StraightFlyer
 
 from scenarios.scenario import Obstacle, Point, Traffic
 from scenarios.world import FlownMover, PointMover, World
+from tests.scenarios.flyers import StraightFlyer
 
 
 def obstacle(north: float, **fields) -> Obstacle:
-    return Obstacle(**{"id": 1, "east": 0.0, "altitude": 200.0, "safety_radius": 1000.0, **fields}, north=north)
+    return Obstacle(
+        **{"id": 1, "east": 0.0, "altitude": 200.0, "safety_radius": 1000.0, **fields}, north=north
+    )
 
 
 def flight(world: World, seconds: int) -> None:
@@ -58,7 +60,7 @@ def test_other_periods_are_kept():
 
 
 def test_a_flight_that_ends_is_not_flown_on():
-    flyer = StraightFlyer(length=30.0)
+    flyer = StraightFlyer(length=29.9)
     world = World([obstacle(0.0)], {"own": flyer})
     flight(world, 3)
     assert world.tracks()[0].times[-1] == pytest.approx(2.0)
