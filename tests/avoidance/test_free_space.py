@@ -102,7 +102,7 @@ def test_within_a_hole_of_repeated_discs_all_points_are_connected(seed) -> None:
 def test_three_circles_through_each_corner_of_a_pocket(seed) -> None:
     """Rounding says at random which of two discs a gap ends at; the pocket must stay one all the same."""
     half, turn = math.pi / 8, 0.1 * seed
-    centres, radii = ring(8, 4_000.0, 1_700.0)
+    centres, _ = ring(8, 4_000.0, 1_700.0)
     corner = 4_000.0 * math.cos(half) - math.sqrt(1_700.0**2 - (4_000.0 * math.sin(half)) ** 2)
     extra, _ = ring(8, corner + 1_700.0, 1_700.0)
     extra = extra @ np.array([(math.cos(half), math.sin(half)), (-math.sin(half), math.cos(half))])

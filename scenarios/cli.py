@@ -1,0 +1,242 @@
+"""The command line. Heavy imports stay inside the commands, so that help answers at once."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import signal
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from scenarios import __version__
+
+if TYPE_CHECKING:
+    from avoidance.parameters import Parameters
+    from scenarios.scenario import Scenario
+
+OK, UNSAFE, BAD_INPUT, FAILED, INTERRUPTED = 0, 1, 2, 3, 130
+
+app = typer.Typer(
+    name="sidestep",
+    help="Sense and avoid for fixed-wing UAVs: fly missions among obstacles on a 6-DOF aircraft model.",
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,  # plain help: rich would double the time it takes
+    add_completion=False,
+)
+
+
+def main() -> None:
+    """Entry point of the `sidestep` command."""
+    app()
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"sidestep {__version__}")
+        raise typer.Exit(OK)
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
+    ] = False,
+) -> None:
+    """Sense and avoid for fixed-wing UAVs: fly missions among obstacles on a 6-DOF aircraft model."""
+
+
+@app.command("list")
+def list_scenarios() -> None:
+    """List the scenarios that come with Sidestep."""
+    from scenarios.load import catalogue_names, load  # noqa: PLC0415
+    from scenarios.show import scenario_table  # noqa: PLC0415
+
+    with _errors():
+        scenario_table([load(name) for name in catalogue_names()])
+
+
+@app.command()
+def fly(
+    scenario: Annotated[
+        str, typer.Argument(help="Name from `sidestep list`, or the path of a .toml file.")
+    ] = "table4",
+    *,
+    seed: Annotated[int, typer.Option(min=0, help="All randomness comes from it.")] = 0,
+    preset: Annotated[
+        str, typer.Option(help="Avoidance as good as we can (default), or as printed (paper).")
+    ] = "default",
+    wind: Annotated[
+        str | None,
+        typer.Option(metavar="N,E", help="Steady wind towards north and east [m/s], such as 3,-4."),
+    ] = None,
+    obstacles: Annotated[
+        int | None,
+        typer.Option(metavar="N", min=0, max=100_000, help="How many obstacles 'random' draws."),
+    ] = None,
+    fidelity: Annotated[
+        str | None, typer.Option(help="6dof or kinematic; the scenario's own if not given.")
+    ] = None,
+    no_avoidance: Annotated[bool, typer.Option("--no-avoidance", help="Fly on whatever is ahead.")] = False,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Where the run is written (else sidestep-runs)."),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print summary.json and nothing else.")] = False,
+) -> None:
+    """Fly a scenario and write down everything about it.
+
+    Exit codes: 0 flown safely; 1 a safety sphere was entered or the mission not completed; 2 bad input;
+    3 the aircraft model or a link failed; 130 interrupted (what was flown is written).
+    """
+    from dataclasses import replace  # noqa: PLC0415
+
+    from scenarios import run  # noqa: PLC0415
+    from scenarios.check import wind_problems  # noqa: PLC0415
+    from scenarios.errors import ScenarioError  # noqa: PLC0415
+    from scenarios.load import load  # noqa: PLC0415
+    from scenarios.record import check_target, free_directory  # noqa: PLC0415
+    from scenarios.scenario import FIDELITIES, Wind  # noqa: PLC0415
+
+    with _errors():
+        parameters = run.preset(preset)
+        chosen = load(scenario)
+        if wind is not None:
+            chosen = replace(chosen, wind=Wind(*_two_numbers(wind)))
+            if problems := wind_problems(chosen):
+                raise ScenarioError("--wind", problems)
+        if fidelity is not None:
+            if fidelity not in FIDELITIES:
+                known = ", ".join(FIDELITIES)
+                raise ScenarioError("--fidelity", f"{fidelity!r} is unknown; known: {known}")
+            chosen = replace(chosen, vehicle=replace(chosen.vehicle, fidelity=FIDELITIES[fidelity]))
+        chosen = run.prepare(chosen, seed, obstacles=obstacles)
+        directory = output or free_directory(chosen, seed)
+        check_target(directory)
+        code = _fly_and_write(
+            chosen, parameters, directory, seed=seed, avoidance=not no_avoidance, as_json=as_json
+        )
+    raise typer.Exit(code)
+
+
+@app.command()
+def report(directory: Annotated[Path, typer.Argument(metavar="DIR", help="A run directory.")]) -> None:
+    """Write report.html of a run again, from its files alone."""
+    from scenarios.report import write_report  # noqa: PLC0415
+
+    with _errors():
+        typer.echo(str(write_report(directory)))
+
+
+@app.command()
+def replay(
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="A run directory.")],
+    speed: Annotated[float, typer.Option(min=0.0, help="Times real time; 0 shows everything at once.")] = 0.0,
+) -> None:
+    """Tell a recorded flight again, event by event, and check its figures against its files.
+
+    Exit codes: 0 the figures agree; 1 they do not; 2 the directory cannot be read.
+    """
+    from scenarios.recorded import differences, read_run  # noqa: PLC0415
+    from scenarios.replay import timeline  # noqa: PLC0415
+    from scenarios.show import play, verdict_of_replay  # noqa: PLC0415
+
+    with _errors():
+        run = read_run(directory)
+        play(timeline(run), speed)
+        found = differences(run)
+        verdict_of_replay(run, found)
+    raise typer.Exit(UNSAFE if found else OK)
+
+
+def _fly_and_write(
+    scenario: Scenario,
+    parameters: Parameters,
+    directory: Path,
+    *,
+    seed: int,
+    avoidance: bool,
+    as_json: bool,
+) -> int:
+    """Fly, judge, write, show; the exit code."""
+    from scenarios.hangar import Hangar  # noqa: PLC0415
+    from scenarios.record import summary_text, write_run  # noqa: PLC0415
+    from scenarios.report import write_report  # noqa: PLC0415
+    from scenarios.run import Flight  # noqa: PLC0415
+    from scenarios.score import score  # noqa: PLC0415
+    from scenarios.show import Progress, results  # noqa: PLC0415
+
+    with _stop_on_interrupt() as stop, Hangar(scenario, parameters) as hangar:
+        flight = Flight(scenario, hangar, seed=seed, parameters=parameters, avoidance=avoidance)
+        with Progress(scenario) as progress:
+            for frame in flight:
+                progress.update(frame, flight)
+                if stop:
+                    break
+        flown = flight.result()
+    judged = score(flown)
+    write_run(directory, flown, judged, write_report)
+    if as_json:
+        sys.stdout.write(summary_text(judged.summary))
+    else:
+        results(flown, judged, directory)
+    if flown.ending == "interrupted":
+        return INTERRUPTED
+    return OK if judged.safe else UNSAFE
+
+
+def _two_numbers(text: str) -> tuple[float, float]:
+    from scenarios.errors import ScenarioError  # noqa: PLC0415
+
+    try:
+        north, east = (float(part) for part in text.split(","))
+    except ValueError as error:
+        raise ScenarioError("--wind", f"{text!r} must be two numbers with a comma, such as 3,-4") from error
+    if not (math.isfinite(north) and math.isfinite(east)):
+        raise ScenarioError("--wind", f"{text!r} must be two finite numbers")
+    return north, east
+
+
+@contextlib.contextmanager
+def _errors() -> Iterator[None]:
+    """Expected errors become one message on stderr and an exit code."""
+    from fmu.errors import FmuError  # noqa: PLC0415
+    from offboard.errors import OffboardError  # noqa: PLC0415
+    from scenarios.errors import RunDirectoryError, ScenarioError  # noqa: PLC0415
+
+    try:
+        yield
+    except (ScenarioError, RunDirectoryError) as error:
+        typer.echo(f"sidestep: {error}", err=True)
+        raise typer.Exit(BAD_INPUT) from error
+    except (FmuError, OffboardError) as error:
+        typer.echo(f"sidestep: {error}", err=True)
+        raise typer.Exit(FAILED) from error
+    except KeyboardInterrupt as error:
+        typer.echo("sidestep: interrupted, nothing was written", err=True)
+        raise typer.Exit(INTERRUPTED) from error
+
+
+@contextlib.contextmanager
+def _stop_on_interrupt() -> Iterator[list[int]]:
+    """The first Ctrl-C only notes that it came (the list is then not empty), the second one stops hard."""
+    stop: list[int] = []
+
+    def note(number: int, frame: FrameType | None) -> None:  # noqa: ARG001
+        stop.append(number)
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    before = signal.signal(signal.SIGINT, note)
+    try:
+        yield stop
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+if __name__ == "__main__":
+    main()

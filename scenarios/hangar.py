@@ -1,0 +1,151 @@
+"""Vehicles for a scenario: plants of one FMU, with their missions uploaded and started."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from types import TracebackType
+from typing import TYPE_CHECKING, Self
+
+from avoidance import Performance
+from avoidance.parameters import Parameters
+from offboard.frames import MapFrame
+from offboard.mission import MissionItem, MissionPlan
+from offboard.simulated import SimulatedVehicle
+from scenarios.errors import ScenarioError
+from scenarios.scenario import Fidelity, Point, Scenario, Traffic
+from scenarios.world import FlownMover, Mover, PointMover
+
+if TYPE_CHECKING:
+    from fmu.library import FmuLibrary
+    from fmu.plant import FmuPlant
+
+TRACKING_ERROR = {"l1": 5.0, "paper": 10.0}
+"""Largest distance from a straight leg once it is captured, by guidance law [m]."""
+CAPTURE_DISTANCE = {"l1": 250.0, "paper": 2500.0}
+"""Distance along a new leg until it is captured within that, after a reversal of course [m].
+
+Measured on the mission of Sec. 5.1: 219 m (L1, acceptance radius 100 m) and 2,399 m (paper, 1 km).
+"""
+
+
+class Hangar:
+    """Makes the own vehicle and the traffic of a scenario; a context manager, for it holds the library.
+
+    Parameters
+    ----------
+    scenario : Scenario
+        Gives home, wind and vehicle.
+    parameters : Parameters
+        Gives guidance law and acceptance radius.
+
+    Raises
+    ------
+    PlantError
+        If the FMU is missing or does not load.
+    """
+
+    def __init__(self, scenario: Scenario, parameters: Parameters) -> None:
+        from fmu.library import FmuLibrary  # noqa: PLC0415
+
+        home = scenario.home
+        self.frame = MapFrame(home.latitude_deg, home.longitude_deg, home.altitude_m)
+        self._scenario = scenario
+        self._parameters = parameters
+        self._library: FmuLibrary = FmuLibrary.open()
+        self._plants: list[FmuPlant] = []
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Free all plants and the library."""
+        for plant in self._plants:
+            plant.close()
+        self._plants.clear()
+        self._library.close()
+
+    def own_vehicle(self) -> SimulatedVehicle:
+        """The vehicle under test, at the start of its mission."""
+        settings = self._scenario.vehicle
+        radius = settings.acceptance_radius or self._parameters.acceptance_radius
+        return self._vehicle(
+            self._scenario.mission,
+            airspeed=settings.airspeed,
+            fidelity=settings.fidelity,
+            acceptance_radius=radius,
+            heading=settings.heading,
+        )
+
+    def traffic(self) -> list[Mover]:
+        """Everything that moves."""
+        return [self._mover(plan) for plan in self._scenario.traffic]
+
+    def _mover(self, plan: Traffic) -> Mover:
+        if plan.motion == "point":
+            return PointMover(plan)
+        vehicle = self._vehicle(
+            plan.waypoints, airspeed=plan.speed, fidelity=plan.motion, acceptance_radius=100.0
+        )
+        return FlownMover(plan, vehicle, self._scenario.wind.speed)
+
+    def _vehicle(
+        self,
+        points: Sequence[Point],
+        *,
+        airspeed: float,
+        fidelity: Fidelity,
+        acceptance_radius: float,
+        heading: float | None = None,
+    ) -> SimulatedVehicle:
+        from fmu.plant import FmuPlant  # noqa: PLC0415
+
+        start, then = points[0], points[1]
+        if heading is None:
+            heading = math.atan2(then.east - start.east, then.north - start.north)
+        wind = self._scenario.wind
+        try:
+            plant = FmuPlant(
+                self._library,
+                aircraft=self._scenario.vehicle.aircraft,
+                fidelity=fidelity,
+                guidance=self._parameters.guidance,
+                north=start.north,
+                east=start.east,
+                altitude=start.altitude,
+                heading=heading,
+                airspeed=airspeed,
+                home_elevation=self._scenario.home.altitude_m,
+                wind=(wind.north, wind.east, 0.0),
+            )
+        except ValueError as error:
+            raise ScenarioError(self._scenario.name, f"the aircraft cannot be flown so: {error}") from error
+        self._plants.append(plant)
+        performance = Performance(
+            airspeed=airspeed,
+            max_bank=math.atan(plant.limits.turn_factor * math.tan(plant.limits.max_bank)),
+            roll_time=plant.limits.roll_time,
+            acceptance_radius=acceptance_radius,
+            tracking_error=TRACKING_ERROR[self._parameters.guidance],
+            capture_distance=CAPTURE_DISTANCE[self._parameters.guidance],
+            wind_bound=wind.speed,
+        )
+        vehicle = SimulatedVehicle(plant, self.frame, performance)
+        vehicle.upload_mission(mission_plan(points, self.frame))
+        vehicle.start_mission()
+        return vehicle
+
+
+def mission_plan(points: Sequence[Point], frame: MapFrame) -> MissionPlan:
+    """The mission as a vehicle takes it."""
+    items = []
+    for point in points:
+        latitude, longitude = frame.to_geodetic(point.north, point.east)
+        speed = math.nan if point.speed is None else point.speed
+        items.append(MissionItem(latitude, longitude, point.altitude, speed_m_s=speed))
+    return MissionPlan.of(items)

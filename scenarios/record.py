@@ -1,0 +1,291 @@
+"""The files of a run: a directory that is written whole or not at all (docs/run-directory.md)."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+import shutil
+import tempfile
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from avoidance import Detour, Hold, Replace, Reroute, Threat, Waypoint
+from avoidance.types import Floats
+from avoidance.yardsticks import length_to_optimum, search_gap
+from offboard.plan_files import PlanFile, write_plan
+from scenarios.errors import RunDirectoryError
+from scenarios.run import Flown, LoggedDecision
+from scenarios.scenario import Obstacle, Scenario
+from scenarios.score import Fate, Score
+from scenarios.toml_text import to_toml
+from scenarios.track import MovingTrack, Track
+
+MARKS_OF_A_RUN = ("summary.json", "track.csv", "scenario.toml")
+"""A directory with these files is a previous run and may be replaced."""
+
+
+def check_target(directory: Path) -> None:
+    """Make sure, before the flight, that a run can be written to a directory.
+
+    Raises
+    ------
+    RunDirectoryError
+        If it is a file, holds something that is not a run, or cannot be created there.
+    """
+    if directory.is_dir():
+        if any(directory.iterdir()) and not is_run(directory):
+            raise RunDirectoryError(directory, "is not empty and holds no previous run; it is left alone")
+    elif directory.exists():
+        raise RunDirectoryError(directory, "is a file")
+    parent = _existing_parent(directory)
+    try:
+        with tempfile.TemporaryFile(dir=parent):
+            pass
+    except OSError as error:
+        raise RunDirectoryError(parent, f"cannot be written to ({error.strerror})") from error
+
+
+def is_run(directory: Path) -> bool:
+    """True if a directory holds a run."""
+    return all((directory / name).is_file() for name in MARKS_OF_A_RUN)
+
+
+def free_directory(scenario: Scenario, seed: int, base: Path = Path("sidestep-runs")) -> Path:
+    """A directory that does not exist yet: `sidestep-runs/<scenario>-<seed>-<number>`."""
+    number = 1
+    while (directory := base / f"{scenario.name}-{seed}-{number}").exists():
+        number += 1
+    return directory
+
+
+def write_run(
+    directory: Path, flown: Flown, score: Score, report: Callable[[Path], object] | None = None
+) -> None:
+    """Write all files of a run; a previous run there is replaced at the end, in one go.
+
+    Parameters
+    ----------
+    directory : Path
+        Where to.
+    flown, score : Flown, Score
+        The flight and its judgement.
+    report : callable, optional
+        Called with the directory before it takes its final name, to add the report.
+
+    Raises
+    ------
+    RunDirectoryError
+        If it cannot be written; nothing is left behind then.
+    """
+    check_target(directory)
+    directory = directory.absolute()
+    try:
+        directory.parent.mkdir(parents=True, exist_ok=True)
+        temporary = Path(tempfile.mkdtemp(prefix=f".{directory.name}-", dir=directory.parent))
+        try:
+            _write_files(temporary, flown, score)
+            if report is not None:
+                report(temporary)
+            temporary.chmod(0o755)
+            _take_place(temporary, directory)
+        finally:
+            shutil.rmtree(temporary, ignore_errors=True)
+    except OSError as error:
+        raise RunDirectoryError(directory, f"cannot be written ({error})") from error
+
+
+def _take_place(temporary: Path, directory: Path) -> None:
+    """Put a finished directory where it belongs; what was there goes only once that has worked."""
+    if not directory.exists():
+        temporary.rename(directory)
+        return
+    aside = Path(tempfile.mkdtemp(prefix=f".{directory.name}-old-", dir=directory.parent))
+    directory.rename(aside / "run")
+    try:
+        temporary.rename(directory)
+    except OSError:
+        (aside / "run").rename(directory)
+        raise
+    finally:
+        shutil.rmtree(aside, ignore_errors=True)
+
+
+def _existing_parent(directory: Path) -> Path:
+    parent = directory.absolute().parent
+    while not parent.exists():
+        parent = parent.parent
+    return parent
+
+
+def _write_files(directory: Path, flown: Flown, score: Score) -> None:
+    home = flown.scenario.home
+    texts = {
+        "scenario.toml": to_toml(flown.scenario),
+        "summary.json": summary_text(score.summary),
+        "track.csv": track_text([flown.track]),
+        "obstacles.csv": obstacles_text(flown.scenario.obstacles),
+        "traffic.csv": traffic_text(flown.track.times, flown.traffic),
+        "waypoints.csv": waypoints_text(score.fates),
+        "decisions.jsonl": "".join(json_line(decision_row(entry)) for entry in flown.decisions),
+        "run.json": json.dumps(run_facts(flown), indent=2, allow_nan=False) + "\n",
+    }
+    for name, text in texts.items():
+        (directory / name).write_text(text, encoding="utf-8", newline="\n")
+    cruise = flown.scenario.vehicle.airspeed
+    plan = PlanFile(flown.plan, home.latitude_deg, home.longitude_deg, home.altitude_m, cruise)
+    write_plan(directory / "mission.plan", plan)
+
+
+def summary_text(summary: dict[str, Any]) -> str:
+    """`summary.json`, and what `--json` prints."""
+    return json.dumps(summary, indent=2, allow_nan=False) + "\n"
+
+
+def json_line(row: dict[str, Any]) -> str:
+    """One line of `decisions.jsonl`."""
+    return json.dumps(row, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def track_text(tracks: Sequence[Track]) -> str:
+    """`track.csv`."""
+    text = "vehicle,t_s,north_m,east_m,altitude_m,airspeed_m_s,heading_deg,bank_deg\n"
+    for track in tracks:
+        table = np.column_stack(
+            (track.times, track.positions, track.airspeeds, track.headings_deg, track.banks_deg)
+        )
+        text += _lines(f"{track.vehicle}," + ",".join(["%.3f"] * 7), table)
+    return text
+
+
+def obstacles_text(obstacles: Iterable[Obstacle]) -> str:
+    """`obstacles.csv`: what stands still."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(("id", "kind", "north_m", "east_m", "altitude_m", "radius_m", "appears_at_s"))
+    for o in obstacles:
+        numbers = (o.north, o.east, o.altitude, o.safety_radius, o.appears_at)
+        writer.writerow((o.id, o.kind, *(f"{value:.3f}" for value in numbers)))
+    return text.getvalue()
+
+
+def traffic_text(times: Floats, traffic: Iterable[MovingTrack]) -> str:
+    """`traffic.csv`: what moves, while it exists, one obstacle after the other."""
+    text = "t_s,id,north_m,east_m,altitude_m\n"
+    for mover in traffic:
+        exists = np.isfinite(mover.positions[:, 0])
+        table = np.column_stack((times[exists], mover.positions[exists]))
+        text += _lines(f"%.3f,{mover.id},%.3f,%.3f,%.3f", table)
+    return text
+
+
+def waypoints_text(fates: Iterable[Fate]) -> str:
+    """`waypoints.csv`: what became of each waypoint of the mission; empty where there is no value."""
+    text = "waypoint,north_m,east_m,goal_north_m,goal_east_m,shift_m,passed_at_s,missed_by_m\n"
+    for fate in fates:
+        goal = fate.goal
+        point = goal.point or (None, None)
+        values = (goal.north, goal.east, *point, goal.shift, fate.passed_at, fate.missed_by)
+        shown = ("" if value is None else f"{value:.3f}" for value in values)
+        text += ",".join((str(goal.waypoint), *shown)) + "\n"
+    return text
+
+
+def run_facts(flown: Flown) -> dict[str, Any]:
+    """`run.json`: how the run was made, and where its wall time went."""
+    return {
+        "scenario": flown.scenario.name,
+        "seed": flown.seed,
+        "preset": flown.parameters.name,
+        "avoidance": flown.avoidance,
+        "ending": flown.ending,
+        "time_limit_s": round(flown.scenario.limit, 3),
+        "acceptance_radius_m": flown.performance.acceptance_radius,
+        "turn_radius_m": round(flown.performance.turn_radius, 3),
+        "turn_room_m": round(flown.performance.turn_room, 3),
+        "margin_m": flown.parameters.margin,
+        "wall_s": {
+            "flight": round(flown.wall.total, 3),
+            "avoidance": round(flown.wall.avoidance, 3),
+            "radar": round(flown.wall.radar, 3),
+            "plant_and_world": round(flown.wall.world, 3),
+        },
+    }
+
+
+def decision_row(entry: LoggedDecision) -> dict[str, Any]:
+    """One line of `decisions.jsonl` as a dict; keys and units in docs/run-directory.md."""
+    decision, state, search = entry.decision, entry.state, entry.decision.search
+    new = _new_waypoints(entry)
+    return {
+        "t_s": round(state.time, 3),
+        "vehicle": "own",
+        "north_m": round(state.north, 3),
+        "east_m": round(state.east, 3),
+        "altitude_m": round(state.altitude, 3),
+        "threat": None if decision.threat is None else _threat(decision.threat),
+        "decision": decision.name,
+        "rung": decision.rung.name.lower(),
+        "why": decision.why,
+        "waypoint": _point(new[0]) if new else None,
+        "waypoints": [_point(waypoint) for waypoint in new],
+        "hold_radius_m": decision.radius if isinstance(decision, Hold) else None,
+        "route": None if decision.route is None else [_route_point(w) for w in decision.route],
+        "planner": None if search is None else search.planner,
+        "cost": None if search is None else _number(search.cost),
+        "iterations": None if search is None else search.iterations,
+        "evaluations": None if search is None else search.evaluations,
+        "first_feasible": None if search is None else search.first_feasible,
+        "search_gap": None if search is None else _number(search_gap(search), 9),
+        "length_to_optimum": None if search is None else _number(length_to_optimum(search), 9),
+        "decision_ms": round(entry.milliseconds, 3),
+    }
+
+
+def _new_waypoints(entry: LoggedDecision) -> tuple[Waypoint, ...]:
+    match entry.decision:
+        case Detour(waypoint=waypoint) | Hold(centre=waypoint):
+            return (waypoint,)
+        case Replace(waypoint=replacement):
+            return () if replacement is None else (replacement,)
+        case Reroute(waypoints=waypoints):
+            return waypoints
+    return ()
+
+
+def _threat(threat: Threat) -> dict[str, Any]:
+    return {
+        "ids": list(threat.ids),
+        "leg": threat.leg,
+        "distance_m": _number(threat.distance),
+        "time_s": _number(threat.time),
+        "clearance_m": _number(threat.clearance),
+        "required_m": _number(threat.required),
+        "moving": threat.moving,
+    }
+
+
+def _point(waypoint: Waypoint) -> dict[str, float]:
+    return {
+        "north_m": round(waypoint.north, 3),
+        "east_m": round(waypoint.east, 3),
+        "altitude_m": round(waypoint.altitude, 3),
+    }
+
+
+def _route_point(waypoint: Waypoint) -> dict[str, Any]:
+    return {**_point(waypoint), "item": waypoint.item, "moved": waypoint.moved}
+
+
+def _number(value: float | None, digits: int = 3) -> float | None:
+    """A rounded number; None where there is none, so that files hold null and never NaN."""
+    return None if value is None or not math.isfinite(value) else round(float(value), digits)
+
+
+def _lines(pattern: str, table: Floats) -> str:
+    """All rows of a table by one format, in one go (a formatting call per row costs ten times as much)."""
+    return (pattern + "\n") * len(table) % tuple(table.ravel().tolist())
