@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -17,8 +18,8 @@ from avoidance.tracking import Tracker, clusters
 from avoidance.types import (
     Decision,
     Detour,
+    Floats,
     Hold,
-    Ints,
     Keep,
     Ownship,
     Performance,
@@ -120,7 +121,7 @@ class Agent:
         reachable = within_reach(known, own, self._performance)
         blocked = first_blocked_leg(own, route, reachable, self._performance, self._parameters.hysteresis)
         if blocked is None:
-            blocked = first_conflict(own, route, reachable, self._performance, CONFLICT_SHARE)
+            blocked = first_conflict(own, route, reachable, CONFLICT_SHARE)
         if blocked is not None:
             return self._avoid(own, route, reachable, blocked)
         return self._resume(own, route, reachable)
@@ -138,7 +139,7 @@ class Agent:
         if not len(known.keep):
             return None
         items = [(i, w) for i, w in enumerate(route.waypoints) if w.item is not None]
-        room = self._waypoint_room(known)
+        room = self._waypoint_room()
         points = np.array([(w.north, w.east) for _, w in items])
         offset = points[:, None] - known.centres[None]
         distance = np.hypot(offset[..., 0], offset[..., 1])
@@ -152,7 +153,7 @@ class Agent:
             return self._move(own, route, known, index, tuple(int(i) for i in known.ids[near]))
         return None
 
-    def _waypoint_room(self, known: Known) -> float:
+    def _waypoint_room(self) -> float:
         """Room beyond `keep` that a mission waypoint needs, so that it can be left again."""
         return self._performance.turn_room if self._parameters.all_obstacles else 0.0
 
@@ -170,9 +171,13 @@ class Agent:
         here = (own.north, own.east)
         passing = np.minimum(known.keep, _distances(known, here) - 1.0)
         point = None
-        for room in self._rooms(known, original):
+        for room in self._rooms():
             point = nearest_free(
-                (original.north, original.east), here, known.centres, known.keep + room, np.maximum(passing, 0.0)
+                (original.north, original.east),
+                here,
+                known.centres,
+                known.keep + room,
+                np.maximum(passing, 0.0),
             )
             if point is not None:
                 break
@@ -182,7 +187,10 @@ class Agent:
         after = route.waypoints[index + 1 :]
         if point is None:
             return Replace(
-                why=replace_words(original, None, ids), route=before + after, waypoint=None, rung=Rung.WAYPOINT
+                why=replace_words(original, None, ids),
+                route=before + after,
+                waypoint=None,
+                rung=Rung.WAYPOINT,
             )
         chosen = replace(original, north=point[0], east=point[1], moved=True)
         if math.hypot(chosen.north - waypoint.north, chosen.east - waypoint.east) < 1.0:
@@ -194,7 +202,7 @@ class Agent:
             rung=Rung.WAYPOINT,
         )
 
-    def _rooms(self, known: Known, original: Waypoint) -> tuple[float, ...]:
+    def _rooms(self) -> tuple[float, ...]:
         """Room beyond `keep` that a stand-in is given, most wanted first."""
         turn = self._performance.turn_room
         if self._parameters.all_obstacles:
@@ -209,7 +217,7 @@ class Agent:
         if plan is None and blocked.threat.moving and len(known.intruders.required):
             plan = way_round(_least_separation(problem, self._parameters.moving_radius), self._rng)
         if plan is not None:
-            return self._fly_round(own, route, blocked, plan, begin, end)
+            return self._fly_round(route, blocked, plan, begin, end)
         if route.waypoints[end].item is not None and not blocked.threat.moving:
             walled_in = self._move(own, route, known, end, ())
             if walled_in is not None:
@@ -248,7 +256,7 @@ class Agent:
             if len(blocked.blockers)
             else np.empty(0, dtype=np.int64)
         )
-        flown = sum(math.dist(a, b) for a, b in zip(places[:begin], places[1 : begin + 1], strict=True))
+        flown = sum(math.dist(a, b) for a, b in pairwise(places[: begin + 1]))
         problem = WaypointProblem(
             start=places[begin],
             target=places[end + 1],
@@ -265,16 +273,16 @@ class Agent:
         )
         return problem, begin, end
 
-    def _fly_round(
-        self, own: Ownship, route: Route, blocked: Blocked, plan: Plan, begin: int, end: int
-    ) -> Decision:
+    def _fly_round(self, route: Route, blocked: Blocked, plan: Plan, begin: int, end: int) -> Decision:
         altitude = route.waypoints[end].altitude
         new = tuple(Waypoint(north, east, altitude) for north, east in plan.waypoints)
         waypoints = (*route.waypoints[:begin], *new, *route.waypoints[end:])
-        why = detour_words(blocked.threat, plan, own)
+        why = detour_words(blocked.threat, plan)
         self._avoiding_intruder = blocked.threat.moving
         self._holding = False
         self._failures = 0
+        if not new:
+            return _straight_on(blocked, waypoints, was_straight=begin == end)
         if len(new) == 1:
             return Detour(
                 why=why,
@@ -344,13 +352,21 @@ class Agent:
         direct = Route(origin=here, waypoints=route.waypoints[ahead:])
         if first_blocked_leg(own, direct, known, self._performance, 0.0) is not None:
             return CLEAR
-        if first_conflict(own, direct, known, self._performance, 1.0) is not None:
+        if first_conflict(own, direct, known, 1.0) is not None:
             return CLEAR
         self._avoiding_intruder = False
         return Resume(why="the intruder has passed", route=direct.waypoints)
 
 
-def _distances(known: Known, point: tuple[float, float]) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+def _straight_on(blocked: Blocked, waypoints: tuple[Waypoint, ...], was_straight: bool) -> Decision:
+    """The vehicle is already inside the margin and the straight way leads out of it."""
+    why = f"{threat_words(blocked.threat)}; flying straight on is the way out"
+    if was_straight:
+        return Keep(why=why, threat=blocked.threat, rung=Rung.ROUTE)
+    return Resume(why=why, threat=blocked.threat, rung=Rung.ROUTE, route=waypoints)
+
+
+def _distances(known: Known, point: tuple[float, float]) -> Floats:
     return np.hypot(known.centres[:, 0] - point[0], known.centres[:, 1] - point[1])
 
 
@@ -359,6 +375,3 @@ def _least_separation(problem: WaypointProblem, radius: float) -> WaypointProble
     intruders = problem.intruders
     required = np.minimum(intruders.required, radius + 50.0)
     return replace(problem, intruders=Intruders(intruders.positions, intruders.velocities, required))
-
-
-__all__ = ["Agent", "Ints"]

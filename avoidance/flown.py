@@ -45,9 +45,9 @@ def flown_segments(
     Notes
     -----
     At a corner of up to 90 degrees the vehicle turns inside the triangle of entry point, waypoint and exit
-    point, so the chord is added to the two legs. At a sharper one it flies the turning circle beside the end
-    of the incoming leg, and from there to the exit point. After a change of target the turn begins where the vehicle is: it
-    runs on by R tan(dchi/2) plus the roll distance and joins the leg from outside.
+    point, so the chord is added to the two legs. At a sharper one it flies the turning circle beside the
+    end of the incoming leg, and from there to the exit point. After a change of target the turn begins
+    where the vehicle is: it runs on by R tan(dchi/2) plus the roll distance and joins the leg from outside.
     """
     corners = as_complex(points)
     legs = corners[:, 1:] - corners[:, :-1]
@@ -59,7 +59,8 @@ def flown_segments(
         entry = corners[:, 1:-1] - np.minimum(run, lengths[:, :-1]) * units[:, :-1]
         begin, room, _ = _turn(entry, units[:, :-1], units[:, 1:], performance)
         starts.append(begin)
-        ends.append(corners[:, 1:-1] + np.minimum(performance.capture_distance, lengths[:, 1:]) * units[:, 1:])
+        capture = np.minimum(performance.capture_distance, lengths[:, 1:])
+        ends.append(corners[:, 1:-1] + capture * units[:, 1:])
         extra.append(room)
     if course is not None:
         first = _first_turn(corners[:, :1], units[:, :1], lengths[:, :1], course, performance)
@@ -74,8 +75,10 @@ def flown_segments(
 
 
 def as_complex(points: Floats) -> Complexes:
-    """Points of shape (..., 2) as north + i east, shape (...): the dot and cross product of a and b are the
-    real and the imaginary part of conj(a) b."""
+    """Points of shape (..., 2) as north + i east, shape (...).
+
+    The dot and the cross product of a and b are the real and the imaginary part of conj(a) b.
+    """
     return np.ascontiguousarray(points).view(np.complex128)[..., 0]
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -62,7 +63,8 @@ def way_round(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None
             continue
         if "g2" in relaxed:
             route = exact_route(problem)
-            if route is not None and _length(problem, (search.found,)) > WORTH_A_ROUTE * _length(problem, route):
+            single = _length(problem, (search.found,))
+            if route is not None and single > WORTH_A_ROUTE * _length(problem, route):
                 return Plan(Rung.ROUTE, route, search)
         return Plan(rung, (search.found,), search)
     route = exact_route(problem)
@@ -75,7 +77,8 @@ def exact_route(problem: WaypointProblem) -> tuple[tuple[float, float], ...] | N
     """Waypoints of the shortest path round everything known that can be flown, or None.
 
     The circles are widened step by step until the flown curve, with its turns, is clear of those that must
-    be kept; intruders are not considered.
+    be kept; intruders are not considered. No waypoints at all: the straight way leads out of a margin that
+    the vehicle is already inside.
     """
     keep = problem.keep
     free_start = _distance(problem.centres, problem.start) - 0.5
@@ -95,7 +98,7 @@ def exact_route(problem: WaypointProblem) -> tuple[tuple[float, float], ...] | N
 
 def _length(problem: WaypointProblem, waypoints: tuple[tuple[float, float], ...]) -> float:
     corners = (problem.start, *waypoints, problem.target)
-    return sum(math.dist(a, b) for a, b in zip(corners, corners[1:], strict=False))
+    return sum(math.dist(a, b) for a, b in pairwise(corners))
 
 
 def _flyable(problem: WaypointProblem, corners: Floats) -> bool:

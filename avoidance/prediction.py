@@ -43,9 +43,7 @@ def route_separation(
     units = legs / np.maximum(times * speed, 1e-9)[..., None]
     own_velocity = speed * units
     relative = (
-        points[:, :-1, None, :]
-        - positions[None, None]
-        - velocities[None, None] * begin[..., None, None]
+        points[:, :-1, None, :] - positions[None, None] - velocities[None, None] * begin[..., None, None]
     )
     closing = own_velocity[:, :, None, :] - velocities[None, None]
     square = np.maximum((closing**2).sum(-1), 1e-12)

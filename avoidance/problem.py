@@ -101,7 +101,7 @@ class WaypointProblem:
         return active
 
     def waypoint_violation(self, points: Floats) -> Floats:
-        """How far candidates of shape (n, 2) break g1 and g2, the constraints on the point itself [m], (n,)."""
+        """How far candidates of shape (n, 2) break g1 and g2, which need no route [m], shape (n,)."""
         total = self._safe_waypoint(points)
         if "g2" not in self.relaxed:
             total = total + search_space(points, self.centres[self.avoided], self.parameters.search_limit)
@@ -115,7 +115,7 @@ class WaypointProblem:
         return total
 
     def rank(self, points: Floats) -> Floats:
-        """One number per candidate of shape (n, 2) by which any planner may order them, smaller is better."""
+        """One number per candidate of shape (n, 2) by which every planner orders them, smaller is better."""
         violation = self.violation(points)
         return np.where(violation > 0.0, INFEASIBLE + violation, self.cost(points))
 

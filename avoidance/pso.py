@@ -66,9 +66,7 @@ class Pso:
     @property
     def finished(self) -> bool:
         """True when the iterations are used up or the stop rule of Table 2 holds."""
-        return (
-            self.iteration > self._settings.iterations or self._unchanged >= self._settings.stop_iterations
-        )
+        return self.iteration > self._settings.iterations or self._unchanged >= self._settings.stop_iterations
 
     def ask(self) -> Floats:
         """Points to be evaluated next, shape (n, 2) [m]."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -111,9 +112,7 @@ def first_blocked_leg(
     return Blocked(threat, leg, blockers)
 
 
-def first_conflict(
-    own: Ownship, route: Route, known: Known, performance: Performance, share: float
-) -> Blocked | None:
+def first_conflict(own: Ownship, route: Route, known: Known, share: float) -> Blocked | None:
     """The first leg on which an intruder comes closer than `share` of what must be kept, or None.
 
     Notes
@@ -169,22 +168,21 @@ def _entry_distances(begin: Floats, end: Floats, centres: Floats, radii: Floats)
     forward = offset @ unit
     across = unit[0] * offset[:, 1] - unit[1] * offset[:, 0]
     half = np.sqrt(np.maximum(radii**2 - across**2, 0.0))
-    return np.clip(forward - half, 0.0, length)
+    return np.asarray(np.clip(forward - half, 0.0, length))
 
 
-def _closest_approach(
-    speed: float, points: Floats, intruders: Intruders, index: int
-) -> tuple[float, float]:
+def _closest_approach(speed: float, points: Floats, intruders: Intruders, index: int) -> tuple[float, float]:
     """Time until, and own distance flown to, the closest point of approach to one intruder."""
     position, velocity = intruders.positions[index], intruders.velocities[index]
     clock, best, when = 0.0, math.inf, 0.0
-    for begin, end in zip(points[:-1], points[1:], strict=True):
+    for begin, end in pairwise(points):
         leg = float(np.hypot(*(end - begin)))
         if leg < 1e-9:
             continue
         closing = speed * (end - begin) / leg - velocity
         relative = begin - position - velocity * clock
-        moment = float(np.clip(-(relative @ closing) / max(float(closing @ closing), 1e-12), 0.0, leg / speed))
+        square = max(float(closing @ closing), 1e-12)
+        moment = float(np.clip(-(relative @ closing) / square, 0.0, leg / speed))
         miss = float(np.hypot(*(relative + closing * moment)))
         if miss < best:
             best, when = miss, clock + moment

@@ -33,7 +33,7 @@ class Optimiser(Protocol):
 
 
 HOPELESS = 8
-"""Rule seeds find a feasible point if there is one; a swarm without any after so many iterations is stopped."""
+"""Rule seeds find a feasible point if there is one; a swarm that has none after so many iterations stops."""
 
 OPTIMISERS: dict[str, type[Optimiser]] = {"pso": Pso}
 """Planners by name."""

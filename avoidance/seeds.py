@@ -138,9 +138,7 @@ def _tangent_directions(point: tuple[float, float], centres: Floats, radii: Floa
     return np.concatenate([bearing - opening, bearing + opening])
 
 
-def _cross(
-    start: tuple[float, float], first: Floats, target: tuple[float, float], second: Floats
-) -> Floats:
+def _cross(start: tuple[float, float], first: Floats, target: tuple[float, float], second: Floats) -> Floats:
     """Intersections of rays from the start with rays from the target, shape (m, 2)."""
     a, b = np.meshgrid(first, second, indexing="ij")
     determinant = np.sin(b - a)

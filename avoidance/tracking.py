@@ -169,10 +169,10 @@ class Tracker:
                 score[:, track] = np.inf
         new = np.flatnonzero(rows < 0)
         rows[new] = len(self._ids) + np.arange(len(new))
-        self._add(scan, new, own)
+        self._add(scan, new)
         return rows
 
-    def _add(self, scan: RadarScan, new: Ints, own: Ownship) -> None:
+    def _add(self, scan: RadarScan, new: Ints) -> None:
         if not len(new):
             return
         count = len(new)
@@ -350,9 +350,7 @@ def _usable(scan: RadarScan) -> RadarScan:
     return RadarScan(scan.time, scan.ids[good], scan.positions[good], scan.radii[good])
 
 
-def _same_still(
-    before: Picture, ids: Ints, positions: Floats, moving: Bools, confirmed: Bools
-) -> bool:
+def _same_still(before: Picture, ids: Ints, positions: Floats, moving: Bools, confirmed: Bools) -> bool:
     """True if what stands still is where it was, within a metre."""
     if len(before.ids) != len(ids) or not np.array_equal(before.moving, moving):
         return False

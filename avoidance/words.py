@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 from avoidance.ladder import Plan
-from avoidance.types import Ownship, Rung, Threat, Waypoint
+from avoidance.types import Rung, Threat, Waypoint
 
 GIVEN_UP = {
     Rung.WIDE_TURN: "; the turn is tighter than one turn radius allows for",
@@ -40,11 +41,13 @@ def threat_words(threat: Threat) -> str:
     )
 
 
-def detour_words(threat: Threat, plan: Plan, own: Ownship) -> str:
+def detour_words(threat: Threat, plan: Plan) -> str:
     """What is wrong and how it is flown round."""
     start, target = plan.search.start, plan.search.target
     corners = (start, *plan.waypoints, target)
-    added = sum(math.dist(a, b) for a, b in zip(corners, corners[1:], strict=False)) - math.dist(start, target)
+    added = sum(math.dist(a, b) for a, b in pairwise(corners)) - math.dist(start, target)
+    if not plan.waypoints:
+        return threat_words(threat)
     side = _side(start, plan.waypoints[0], target)
     count = "" if len(plan.waypoints) == 1 else f" by {len(plan.waypoints)} waypoints"
     return f"{threat_words(threat)}; pass {side}{count}, {added:.0f} m longer{GIVEN_UP.get(plan.rung, '')}"
@@ -53,7 +56,9 @@ def detour_words(threat: Threat, plan: Plan, own: Ownship) -> str:
 def replace_words(original: Waypoint, chosen: Waypoint | None, ids: tuple[int, ...]) -> str:
     """Why a mission waypoint is moved or skipped."""
     number = (original.item or 0) + 1
-    why = f"waypoint {number} cannot be flown to: {obstacles(ids)} too near" if ids else f"waypoint {number} is walled in"
+    why = f"waypoint {number} is walled in"
+    if ids:
+        why = f"waypoint {number} cannot be flown to: {obstacles(ids)} too near"
     if chosen is None:
         return f"{why}; no safe point near it can be reached, so it is skipped"
     moved = math.hypot(chosen.north - original.north, chosen.east - original.east)

@@ -1,7 +1,9 @@
 """Leg sequencing: which waypoint is flown to, and from where the leg begins.
 
 Pure functions on immutable values, shared by every simulated vehicle. The paper's leg change (Sec. 3.6,
-Fig. 5): a leg ends when its end is nearer than the acceptance radius, or has been passed abeam.
+Fig. 5): a leg ends when its end is nearer than the acceptance radius, or has been passed abeam. Differs
+from the paper: E25, Eqs. (16)-(17) end a leg a second time, by the distance from its start, which is wrong
+off the track.
 """
 
 from __future__ import annotations

@@ -39,7 +39,9 @@ def test_g3_tests_segments_and_not_lines() -> None:
 
 def test_g3_adds_the_room_of_a_turn() -> None:
     starts, ends = np.array([[[0.0, 0.0]]]), np.array([[[0.0, 10.0]]])
-    assert feasible_segments(starts, ends, np.array([[90.0]]), ONE, np.array([950.0]))[0] == pytest.approx(40.0)
+    assert feasible_segments(starts, ends, np.array([[90.0]]), ONE, np.array([950.0]))[0] == pytest.approx(
+        40.0
+    )
 
 
 def test_g4_as_printed_limits_the_heading_change() -> None:

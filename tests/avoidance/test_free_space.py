@@ -118,6 +118,24 @@ def test_three_circles_through_each_corner_of_a_pocket(seed) -> None:
     assert space.unbounded(FAR)
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_every_loop_closes_where_circles_coincide_and_meet_in_points(seed) -> None:
+    """Where disc j lets go of circle i a gap begins on i and one ends on j: each start has its end."""
+    rng = np.random.default_rng(seed)
+    centres = rng.integers(0, 6, (40, 2)) * 1_000.0
+    cosine, sine = math.cos(0.7 * seed), math.sin(0.7 * seed)
+    repeated = np.concatenate([centres, centres]) @ np.array([(cosine, sine), (-sine, cosine)])
+
+    space = FreeSpace.of(repeated, np.full(80, 1_000.0 * math.sqrt(0.5)))
+
+    arcs, following = space.arcs, space.arcs.following
+    gaps = space.loops >= 0
+    starts = list(zip(arcs.closer[gaps].tolist(), arcs.disc[gaps].tolist(), strict=True))
+    ends = list(zip(arcs.disc[gaps].tolist(), arcs.opener[following[gaps]].tolist(), strict=True))
+    assert len(starts) > 20
+    assert sorted(starts) == sorted(ends)
+
+
 def test_points_on_a_circle_or_on_a_corner_count_as_free() -> None:
     centres, radii = ring(8, 4_000.0, 1_700.0)
     corner_distance = 4_000.0 * math.cos(math.pi / 8) - math.sqrt(

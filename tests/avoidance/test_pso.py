@@ -41,7 +41,9 @@ def test_the_printed_stop_rule_fires_after_five_small_changes() -> None:
 
 
 def test_the_same_seed_gives_the_same_swarm() -> None:
-    bests = [run(Pso(np.array([[900.0, 700.0]]), SwarmSettings(), np.random.default_rng(5))).best for _ in "ab"]
+    bests = [
+        run(Pso(np.array([[900.0, 700.0]]), SwarmSettings(), np.random.default_rng(5))).best for _ in "ab"
+    ]
     assert bests[0].tolist() == bests[1].tolist()
 
 

@@ -1,0 +1,46 @@
+"""From a blocked leg to a way round it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from avoidance import Rung
+from avoidance.constraints import feasible_segments
+from avoidance.flown import flown_segments
+from avoidance.ladder import exact_route, way_round
+from tests.avoidance.worlds import PERFORMANCE, problem
+
+WALLS = [(6000.0, float(e)) for e in range(-60_000, 3000, 1500)]
+WALLS += [(11_000.0, float(e)) for e in range(-3000, 60_000, 1500)]
+
+
+def test_one_waypoint_is_preferred() -> None:
+    plan = way_round(problem([(9000.0, 300.0)]), np.random.default_rng(0))
+    assert plan is not None
+    assert plan.rung is Rung.WAYPOINT
+
+
+def test_the_exact_route_is_clear_as_flown() -> None:
+    question = problem(WALLS, target=(17_000.0, 0.0))
+    route = exact_route(question)
+    assert route is not None
+    corners = np.array([question.start, *route, question.target])[None]
+    starts, ends, extra = flown_segments(corners, 0.0, PERFORMANCE)
+    keep = np.full(len(WALLS), 1000.0 + PERFORMANCE.tracking_error)
+    assert feasible_segments(starts, ends, extra, question.centres, keep)[0] == 0.0
+
+
+def test_a_short_route_beats_a_single_waypoint_far_away() -> None:
+    plan = way_round(problem(WALLS, target=(17_000.0, 0.0)), np.random.default_rng(0))
+    assert plan is not None
+    assert plan.rung is Rung.ROUTE
+
+
+@pytest.mark.parametrize("radius", [1500.0, 2500.0])
+def test_no_way_is_none(radius: float) -> None:
+    angles = np.linspace(0.0, 2 * math.pi, 14, endpoint=False)
+    ring = [(20_000 + radius * math.cos(a), radius * math.sin(a)) for a in angles]
+    assert way_round(problem(ring, target=(20_000.0, 0.0)), np.random.default_rng(0)) is None

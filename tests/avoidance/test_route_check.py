@@ -1,0 +1,84 @@
+"""Which leg is blocked first, and by what."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from avoidance import Ownship, RadarScan, Route
+from avoidance.known import Known, known_obstacles, within_reach
+from avoidance.parameters import DEFAULT
+from avoidance.problem import Intruders
+from avoidance.route_check import first_blocked_leg, first_conflict
+from avoidance.tracking import Tracker
+from tests.avoidance.worlds import PERFORMANCE, ownship, route, scan
+
+
+def known(obstacles: list[tuple[float, float]], own: Ownship, way: Route, altitude: float = 200.0) -> Known:
+    tracker = Tracker(DEFAULT)
+    for second in range(2):
+        seen: RadarScan = scan(obstacles, float(second), altitude=altitude)
+        picture = tracker.update(seen, own)
+    return known_obstacles(picture, own, way, PERFORMANCE, DEFAULT)
+
+
+def test_what_lies_behind_the_vehicle_blocks_nothing() -> None:
+    """Erratum E17: an infinite line flags obstacles already passed."""
+    own, way = ownship(5000.0), route((40_000.0, 0.0))
+    assert first_blocked_leg(own, way, known([(2000.0, 0.0)], own, way), PERFORMANCE, 10.0) is None
+
+
+def test_what_lies_beyond_the_end_of_the_leg_blocks_nothing() -> None:
+    own, way = ownship(), route((10_000.0, 0.0), (10_000.0, 30_000.0))
+    assert first_blocked_leg(own, way, known([(12_000.0, 0.0)], own, way), PERFORMANCE, 10.0) is None
+
+
+def test_a_later_leg_is_found_too() -> None:
+    own, way = ownship(), route((6000.0, 0.0), (6000.0, 30_000.0))
+    blocked = first_blocked_leg(own, way, known([(6400.0, 5000.0)], own, way), PERFORMANCE, 10.0)
+    assert blocked is not None
+    assert blocked.leg == 1
+    assert blocked.threat.clearance == pytest.approx(400.0)
+    assert 6000.0 + 3900.0 < blocked.threat.distance < 6000.0 + 4100.0
+
+
+def test_the_nearest_blocker_comes_first() -> None:
+    own, way = ownship(), route((40_000.0, 0.0))
+    blocked = first_blocked_leg(
+        own, way, known([(9000.0, 0.0), (5000.0, 300.0)], own, way), PERFORMANCE, 10.0
+    )
+    assert blocked is not None
+    assert blocked.threat.ids == (2, 1)
+
+
+def test_the_inside_of_a_corner_counts() -> None:
+    """The legs keep clear of it, the turn between them would not."""
+    own, way = ownship(), route((6000.0, 0.0), (12_000.0, 6000.0))
+    beside = np.array([6000.0, 0.0]) + 1055.0 * np.array([-np.sin(np.pi / 8), np.cos(np.pi / 8)])
+    blocked = first_blocked_leg(own, way, known([(beside[0], beside[1])], own, way), PERFORMANCE, 0.0)
+    assert blocked is not None
+
+
+def test_spheres_are_cut_at_flight_altitude() -> None:
+    own, way = ownship(), route((40_000.0, 0.0))
+    circle = known([(5000.0, 0.0)], own, way, altitude=815.0)  # 600 m above the band
+    assert circle.keep[0] == pytest.approx(800.0 + DEFAULT.margin)
+
+
+def test_circles_shrink_where_the_margin_cannot_be_kept_any_more() -> None:
+    own, way = ownship(), route((40_000.0, 0.0))
+    near = within_reach(known([(0.0, 1020.0)], own, way), own, PERFORMANCE)
+    assert near.keep[0] == pytest.approx(1019.0)
+
+
+def test_a_conflict_names_time_and_distance() -> None:
+    own, way = ownship(), route((40_000.0, 0.0))
+    oncoming = Intruders(np.array([[9000.0, 200.0]]), np.array([[-15.0, 0.0]]), np.array([1300.0]))
+    empty = known([], own, way)
+    world = Known(empty.ids, empty.centres, empty.keep, empty.keep_waypoint, np.array([7]), oncoming)
+    blocked = first_conflict(own, way, world, 1.0)
+    assert blocked is not None
+    assert blocked.threat.moving
+    assert blocked.threat.ids == (7,)
+    assert blocked.threat.time == pytest.approx(300.0)
+    assert blocked.threat.clearance == pytest.approx(200.0)
