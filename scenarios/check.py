@@ -106,11 +106,15 @@ def _random(scenario: Scenario) -> list[Problem]:
     settings = scenario.random
     if settings is None:
         return []
-    least = max(settings.clear_of_start, settings.safety_radius) / 4.0
-    if settings.sigma >= least:
-        return []
-    message = f"must be at least {least:g}, or nearly every draw falls too close to the start"
-    return [Problem("random.sigma_m", settings.sigma, message)]
+    problems = []
+    if settings.largest < settings.safety_radius:
+        message = f"must be at least safety_radius_m, {settings.safety_radius:g}"
+        problems.append(Problem("random.largest_safety_radius_m", settings.largest, message))
+    least = max(settings.clear_of_start, settings.largest) / 4.0
+    if settings.sigma < least:
+        message = f"must be at least {least:g}, or nearly every draw falls too close to the start"
+        problems.append(Problem("random.sigma_m", settings.sigma, message))
+    return problems
 
 
 def _aircraft(scenario: Scenario) -> list[Problem]:

@@ -207,8 +207,11 @@ def _assemble(
             table.random.sigma_m,
             table.random.clear_of_start_m,
             table.random.safety_radius_m,
+            table.random.largest_safety_radius_m,
         ),
         time_limit=table.time_limit_s,
+        seed=table.seed,
+        preset=table.preset,
     )
 
 

@@ -15,7 +15,7 @@ from offboard.mission import MissionPlan
 from offboard.pilot import Agent, Frame, Pilot, fly
 from scenarios.errors import ScenarioError
 from scenarios.radar import SimulatedRadar
-from scenarios.scenario import Scenario, scatter, streams
+from scenarios.scenario import RadarSettings, Scenario, scatter, streams
 from scenarios.track import MovingTrack, Track
 from scenarios.world import Flyer, Mover, World
 
@@ -146,7 +146,8 @@ class Flight:
         if avoidance:
             from avoidance.agent import Agent as Core  # noqa: PLC0415
 
-            core: Agent = Core(self.vehicle.performance, parameters, generators["planner"])
+            told = informed(parameters, scenario.radar)
+            core: Agent = Core(self.vehicle.performance, told, generators["planner"])
         else:
             core = FlyOn()
         self._agent = _WatchedAgent(core)
@@ -219,6 +220,11 @@ def preset(name: str) -> Parameters:
     if name not in PRESETS:
         raise ScenarioError("--preset", f"{name!r} is unknown; known: {', '.join(PRESETS)}")
     return PRESETS[name]
+
+
+def informed(parameters: Parameters, radar: RadarSettings) -> Parameters:
+    """Parameters of a core that has read the data sheet of its radar: how accurate it is."""
+    return replace(parameters, range_sigma=radar.range_noise, bearing_sigma=radar.bearing_noise)
 
 
 class FlyOn:

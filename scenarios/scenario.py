@@ -14,6 +14,8 @@ NEAR = 3000.0
 """Within this distance of anything that could be hit, flights are recorded at 10 Hz [m]."""
 TRAFFIC_VIOLATION_RADIUS = 1000.0
 """Coming closer than this to moving traffic is a violation unless the scenario says otherwise [m]."""
+START_ROOM = 500.0
+"""No drawn obstacle's sphere comes nearer to the start than this [m]."""
 LEAST_AIR_MARGIN = 3.0
 """The wind must be slower than the airspeed by at least this [m/s]."""
 
@@ -148,7 +150,14 @@ class RandomField:
     clear_of_start: float = 2000.0
     """A draw this close to the start is drawn again [m]."""
     safety_radius: float = 1000.0
-    """RS of each [m]."""
+    """RS of each [m]; the least of them if they differ."""
+    largest_safety_radius: float | None = None
+    """Radii are uniform up to this [m]; None makes all alike."""
+
+    @property
+    def largest(self) -> float:
+        """Largest RS that can be drawn [m]."""
+        return self.safety_radius if self.largest_safety_radius is None else self.largest_safety_radius
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,6 +179,10 @@ class Scenario:
     """Obstacles still to be drawn; None once they are."""
     time_limit: float | None = None
     """The flight is broken off after this time [s]; None takes twice the nominal time."""
+    seed: int = 0
+    """All randomness of a flight comes from it, unless another one is given."""
+    preset: str = "default"
+    """Parameters of the avoidance core it is flown with, unless others are given."""
 
     @property
     def limit(self) -> float:
@@ -230,7 +243,10 @@ def scatter(scenario: Scenario, rng: np.random.Generator) -> Scenario:
     drawn = []
     for index in range(settings.count):
         waypoint = scenario.mission[index % len(scenario.mission)]
-        clear = max(settings.clear_of_start, settings.safety_radius + 1.0)
+        radius = settings.safety_radius
+        if settings.largest_safety_radius is not None:
+            radius = round(float(rng.uniform(radius, settings.largest_safety_radius)), 3)
+        clear = max(settings.clear_of_start, radius + START_ROOM)
         while True:
             north, east = rng.normal((waypoint.north, waypoint.east), settings.sigma)
             if math.hypot(north - start.north, east - start.east) >= clear:
@@ -241,7 +257,7 @@ def scatter(scenario: Scenario, rng: np.random.Generator) -> Scenario:
                 north=round(float(north), 3),
                 east=round(float(east), 3),
                 altitude=waypoint.altitude,
-                safety_radius=settings.safety_radius,
+                safety_radius=radius,
                 kind="random",
             )
         )

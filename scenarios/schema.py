@@ -123,6 +123,7 @@ class RandomTable(Table):
     sigma_m: Annotated[float, Field(gt=0.0, le=100_000.0)] = 3000.0
     clear_of_start_m: Annotated[float, Field(ge=0.0, le=100_000.0)] = 2000.0
     safety_radius_m: SafetyRadius = 1000.0
+    largest_safety_radius_m: SafetyRadius | None = None
 
 
 class ScenarioTable(Table):
@@ -133,6 +134,8 @@ class ScenarioTable(Table):
     description: Annotated[str, Field(max_length=4_000)] = ""
     start_time_utc: AwareDatetime = datetime(2020, 3, 21, 2, 30, tzinfo=UTC)
     time_limit_s: Annotated[float, Field(gt=0.0, le=1_000_000.0)] | None = None
+    seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
+    preset: Literal["default", "paper"] = "default"
     home: HomeTable = HomeTable()
     wind: WindTable = WindTable()
     radar: RadarTable = RadarTable()

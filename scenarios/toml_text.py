@@ -21,6 +21,8 @@ def to_toml(scenario: Scenario) -> str:
             description=scenario.description,
             start_time_utc=_Bare(scenario.start_time_utc.isoformat().replace("+00:00", "Z")),
             time_limit_s=scenario.time_limit,
+            seed=scenario.seed,
+            preset=scenario.preset,
         ),
         _table(
             "[home]",
@@ -57,6 +59,7 @@ def to_toml(scenario: Scenario) -> str:
                 sigma_m=random.sigma,
                 clear_of_start_m=random.clear_of_start,
                 safety_radius_m=random.safety_radius,
+                largest_safety_radius_m=random.largest_safety_radius,
             )
         )
     parts += [_table("[[mission]]", **_point(p)) for p in scenario.mission]
