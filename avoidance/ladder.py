@@ -1,7 +1,9 @@
 """From a blocked leg to a way round it: one waypoint if there is one, else the exact planner's route.
 
 Constraints are given up in a fixed, reported order: the turn limit (g4), the search limit (g2), the
-tolerance (g1); never RS. Then comes a route of several waypoints, then none: the caller must hold.
+tolerance (g1); never RS. Then comes a route of several waypoints, then none: the caller must hold. A
+waypoint that keeps the tolerance but costs much more than one without, or than the exact route, gives way
+to it.
 """
 
 from __future__ import annotations
@@ -30,9 +32,6 @@ RUNGS: tuple[tuple[Rung, frozenset[str]], ...] = (
 LARGEST_CORNER = math.radians(40.0)
 """Heading change of a corner of an exact route [rad]."""
 
-WORTH_A_ROUTE = 1.1
-"""A single waypoint beyond the search limit is taken only while an exact route is not shorter by this."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
@@ -56,21 +55,26 @@ def way_round(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None
     rng : numpy.random.Generator
         The planner's randomness.
     """
-    search = None
+    worth = problem.parameters.worth_relaxing
+    search, best = None, None
     for rung, relaxed in RUNGS:
+        if best is not None and rung is not Rung.CLOSE:
+            continue
         search = search_waypoint(replace(problem, relaxed=relaxed), rng)
         if search.found is None:
             continue
-        if "g2" in relaxed:
-            route = exact_route(problem)
-            single = _length(problem, (search.found,))
-            if route is not None and single > WORTH_A_ROUTE * _length(problem, route):
-                return Plan(Rung.ROUTE, route, search)
-        return Plan(rung, (search.found,), search)
+        added = _length(problem, (search.found,)) - math.dist(problem.start, problem.target)
+        if added < worth:
+            return Plan(rung, (search.found,), search)
+        if best is None or added < best[0] - worth:
+            best = (added, Plan(rung, (search.found,), search))
     route = exact_route(problem)
-    if route is None or search is None:
-        return None
-    return Plan(Rung.ROUTE, route, search)
+    if best is None:
+        return None if route is None or search is None else Plan(Rung.ROUTE, route, search)
+    single = best[1]
+    if route and _length(problem, route) < _length(problem, single.waypoints) - worth:
+        return Plan(Rung.ROUTE, route, single.search)
+    return single
 
 
 def exact_route(problem: WaypointProblem) -> tuple[tuple[float, float], ...] | None:

@@ -81,6 +81,8 @@ class Parameters:
     """Moving obstacles further away than this are watched, not avoided."""
     predict: bool = True
     """Moving obstacles are extrapolated; else their present position is taken as a stationary one."""
+    worth_relaxing: float = 60.0
+    """A waypoint gives way to one nearer the obstacles, or to a route, that is shorter by more than this."""
     optimiser: str = "pso"
     """Name of the planner of single waypoints."""
     swarm: SwarmSettings = field(default_factory=SwarmSettings)
@@ -105,6 +107,7 @@ PAPER = Parameters(
     moving_margin=0.0,
     reaction_distance=8000.0,
     predict=False,
+    worth_relaxing=math.inf,
     swarm=SwarmSettings(
         particles=10,
         iterations=30,

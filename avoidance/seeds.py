@@ -16,6 +16,8 @@ from avoidance.types import Floats, Ints
 
 OUTSIDE = 0.02
 """Seeds lie this far outside the curves they stand on [m]."""
+CORNER_PADS = (OUTSIDE, 6.0, 20.0, 60.0)
+"""Tangents that meet near their circle are drawn this far outside, so that the turn stays outside too [m]."""
 CHUNK = 48
 """Candidates tested at once for feasibility."""
 CIRCLE_POINTS = 24
@@ -92,12 +94,15 @@ def rule_seeds(problem: WaypointProblem, count: int) -> tuple[Floats, int]:
     candidates = [_fan(problem)] if len(problem.intruders.required) else []
     if len(near):
         centres = problem.centres[near]
-        keep = problem.keep[near] + OUTSIDE
+        keep = problem.keep[near]
         keep_waypoint = (keep if "g1" in problem.relaxed else problem.keep_waypoint[near]) + OUTSIDE
-        from_start = _tangent_directions(problem.start, centres, keep)
-        from_target = _tangent_directions(problem.target, centres, keep)
+        for pad in CORNER_PADS:
+            from_start = _tangent_directions(problem.start, centres, keep + pad)
+            from_target = _tangent_directions(problem.target, centres, keep + pad)
+            candidates.append(_cross(problem.start, from_start, problem.target, from_target))
+        from_start = _tangent_directions(problem.start, centres, keep + OUTSIDE)
+        from_target = _tangent_directions(problem.target, centres, keep + OUTSIDE)
         candidates += [
-            _cross(problem.start, from_start, problem.target, from_target),
             _pierce(problem.start, from_start, centres, keep_waypoint),
             _pierce(problem.target, from_target, centres, keep_waypoint),
             _circle_crossings(centres, keep_waypoint),

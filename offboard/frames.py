@@ -8,13 +8,17 @@ carried beside the map, for a tangent plane would be 9.7 km off in height at 350
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import overload
 
 import numpy as np
+from pymap3d.vincenty import vdist, vreckon
 
 from avoidance.types import Floats
-from offboard.geodesic import direct, inverse
+
+FURTHEST = 10_000e3
+"""A map about home means nothing beyond this distance [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,15 +78,15 @@ class MapFrame:
         Raises
         ------
         ValueError
-            If a position is not finite, or on the opposite side of the earth.
+            If a position is not finite, or further than 10,000 km from home.
         """
-        points = np.radians(np.array([latitude_deg, longitude_deg], dtype=np.float64))
+        points = np.array([latitude_deg, longitude_deg], dtype=np.float64)
         if not np.all(np.isfinite(points)):
             raise ValueError(
                 f"latitude_deg = {latitude_deg}, longitude_deg = {longitude_deg}, must be finite"
             )
-        distance, azimuth = inverse(*self._home, points[0], points[1])
-        return _plain(distance * np.cos(azimuth)), _plain(distance * np.sin(azimuth))
+        north, east = self._each(_inverse, points[0], points[1])
+        return _plain(north), _plain(east)
 
     @overload
     def to_geodetic(self, north: float, east: float) -> tuple[float, float]: ...
@@ -107,13 +111,47 @@ class MapFrame:
         -----
         The round trip closes to a micrometre within 400 km.
         """
-        latitude, longitude = direct(*self._home, np.hypot(north, east), np.arctan2(east, north))
-        return _plain(np.degrees(latitude)), _plain((np.degrees(longitude) + 180.0) % 360.0 - 180.0)
+        latitude, longitude = self._each(_direct, *np.array([north, east], dtype=np.float64))
+        return _plain(latitude), _plain(longitude)
 
-    @property
-    def _home(self) -> tuple[float, float]:
-        """Latitude and longitude of home [rad]."""
-        return math.radians(self.latitude_deg), math.radians(self.longitude_deg)
+    def _each(
+        self,
+        convert: Callable[[float, float, float, float], tuple[float, float]],
+        first: Floats,
+        second: Floats,
+    ) -> Floats:
+        """Convert point by point, shape (2, ...): pymap3d errs on arrays in which two points coincide."""
+        pairs = [
+            convert(self.latitude_deg, self.longitude_deg, a, b)
+            for a, b in zip(first.ravel().tolist(), second.ravel().tolist(), strict=True)
+        ]
+        return np.array(pairs, dtype=np.float64).reshape(-1, 2).T.reshape(2, *first.shape)
+
+
+def _inverse(
+    home_latitude: float, home_longitude: float, latitude: float, longitude: float
+) -> tuple[float, float]:
+    """North and east [m] of a position [deg] on the geodesic from home [deg]."""
+    if (latitude, longitude) == (home_latitude, home_longitude):
+        return 0.0, 0.0
+    distance, azimuth = vdist(home_latitude, home_longitude, latitude, longitude)
+    if not float(distance) < FURTHEST:
+        raise ValueError(
+            f"latitude_deg = {latitude}, longitude_deg = {longitude}, is {float(distance) / 1000:.0f} km "
+            f"from home, must be within {FURTHEST / 1000:.0f} km"
+        )
+    direction = math.radians(float(azimuth))
+    return float(distance) * math.cos(direction), float(distance) * math.sin(direction)
+
+
+def _direct(home_latitude: float, home_longitude: float, north: float, east: float) -> tuple[float, float]:
+    """Latitude and longitude [deg] at the end of the geodesic from home [deg] to a map point [m]."""
+    distance = math.hypot(north, east)
+    if distance == 0.0:
+        return home_latitude, home_longitude
+    azimuth = math.degrees(math.atan2(east, north))
+    latitude, longitude = vreckon(home_latitude, home_longitude, distance, azimuth)
+    return float(latitude), (float(longitude) + 180.0) % 360.0 - 180.0
 
 
 def _plain(value: float | Floats) -> float | Floats:

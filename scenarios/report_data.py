@@ -117,9 +117,15 @@ def read(directory: Path) -> Run:
 
 
 def position(times: Floats, places: Floats, time: float) -> Floats:
-    """Position at `time` [s], linear between samples, shape (3,) [m]."""
-    known = np.isfinite(places[:, 0])
-    return np.array([np.interp(time, times[known], column[known]) for column in places.T])
+    """Position at `time` [s], linear between samples, the known one next to a gap; shape (3,) [m]."""
+    after = min(max(int(np.searchsorted(times, time)), 1), len(times) - 1)
+    before, behind = places[after - 1], places[after]
+    share = min(max((time - times[after - 1]) / (times[after] - times[after - 1]), 0.0), 1.0)
+    between: Floats = before + share * (behind - before)
+    for place in (between, before, behind):
+        if np.isfinite(place).all():
+            return place
+    return between
 
 
 def _hazards(recorded: Recorded) -> tuple[Hazard, ...]:

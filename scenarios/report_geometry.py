@@ -76,7 +76,8 @@ def nearest(run: Run) -> Nearest:
     margin, distance, required = (np.full(len(times), math.inf) for _ in range(3))
     index = np.full(len(times), -1, dtype=np.int64)
     for i, hazard in enumerate(run.hazards):
-        away = np.linalg.norm(own - hazard.places, axis=1)
+        apart = own - hazard.places
+        away = np.sqrt(np.einsum("ij,ij->i", apart, apart))
         nearer = hazard.exists(times) & (away - hazard.radius < margin)
         margin[nearer] = away[nearer] - hazard.radius
         distance[nearer], required[nearer], index[nearer] = away[nearer], hazard.radius, i

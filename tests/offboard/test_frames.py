@@ -70,3 +70,15 @@ def test_arrays_give_what_single_positions_give() -> None:
 def test_home_out_of_range_is_refused(latitude: float, longitude: float, named: str) -> None:
     with pytest.raises(ValueError, match=named):
         MapFrame(latitude, longitude)
+
+
+def test_the_other_side_of_the_earth_is_refused() -> None:
+    with pytest.raises(ValueError, match="must be within 10000 km"):
+        MapFrame(14.39, 76.60).to_map(-14.39, -103.4)
+
+
+def test_a_quarter_of_the_equator_has_its_length() -> None:
+    """0.5 π a with the WGS-84 semi-major axis, within the limit of the map when halved."""
+    north, east = MapFrame(0.0, 0.0).to_map(0.0, 45.0)
+    assert north == pytest.approx(0.0, abs=1e-3)
+    assert east == pytest.approx(0.25 * math.pi * 6378137.0, abs=1e-3)
