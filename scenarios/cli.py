@@ -152,15 +152,16 @@ def replay(
 
     Exit codes: 0 the figures agree; 1 they do not; 2 the directory cannot be read.
     """
-    from scenarios.recorded import differences, read_run  # noqa: PLC0415
+    from scenarios.recorded import differences, read_fleet  # noqa: PLC0415
     from scenarios.replay import timeline  # noqa: PLC0415
     from scenarios.show import play, verdict_of_replay  # noqa: PLC0415
 
     with _errors():
-        run = read_run(directory)
-        play(timeline(run), speed)
-        found = differences(run)
-        verdict_of_replay(run, found)
+        runs = read_fleet(directory)
+        for run in runs:
+            play(timeline(run), speed)
+        found = [text for run in runs for text in differences(run)]
+        verdict_of_replay(runs, found)
     raise typer.Exit(UNSAFE if found else OK)
 
 

@@ -13,8 +13,8 @@ from offboard.frames import MapFrame
 from offboard.mission import MissionItem, MissionPlan
 from offboard.simulated import SimulatedVehicle
 from scenarios.errors import ScenarioError
+from scenarios.movers import FlownMover, Mover, PointMover
 from scenarios.scenario import Fidelity, Point, Scenario, Traffic
-from scenarios.world import FlownMover, Mover, PointMover
 
 if TYPE_CHECKING:
     from fmu.library import FmuLibrary
@@ -74,12 +74,12 @@ class Hangar:
         if not self._shared:
             self._library.close()
 
-    def own_vehicle(self) -> SimulatedVehicle:
-        """The vehicle under test, at the start of its mission."""
+    def own_vehicle(self, mission: Sequence[Point]) -> SimulatedVehicle:
+        """A vehicle under test, at the start of its mission."""
         settings = self._scenario.vehicle
         radius = settings.acceptance_radius or self._parameters.acceptance_radius
         return self._vehicle(
-            self._scenario.mission,
+            mission,
             airspeed=settings.airspeed,
             fidelity=settings.fidelity,
             acceptance_radius=radius,

@@ -6,6 +6,7 @@ import difflib
 import math
 import tomllib
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from datetime import UTC
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,7 @@ from scenarios.check import semantic_problems
 from scenarios.errors import Problem, ScenarioError
 from scenarios.scenario import (
     Home,
+    Member,
     Obstacle,
     Point,
     RadarSettings,
@@ -27,13 +29,13 @@ from scenarios.scenario import (
     VehicleSettings,
     Wind,
 )
-from scenarios.schema import PositionTable, ScenarioTable
+from scenarios.schema import MemberTable, PositionTable, ScenarioTable
 
 CATALOGUE = Path(__file__).parent / "catalogue"
 DEFAULT_SCENARIO = "table4"
 DEFAULT_ALTITUDE = 200.0
 """Altitude of a waypoint that gives none [m]."""
-LISTS = ("mission", "obstacles", "traffic")
+LISTS = ("mission", "obstacles", "traffic", "vehicles")
 
 
 def catalogue_names() -> list[str]:
@@ -153,7 +155,8 @@ def _build(located: _Located, default_name: str) -> tuple[list[Problem], Scenari
     cruise = max(p.altitude for p in mission)
     obstacles = _positions(frame, table.obstacles, cruise)
     traffic = [_positions(frame, flight.waypoints, cruise) for flight in table.traffic]
-    scenario = _assemble(table, default_name, mission, obstacles, traffic)
+    missions = [_own_mission(frame, member, mission) for member in table.vehicles]
+    scenario = _assemble(table, default_name, mission, obstacles, traffic, missions)
     return semantic_problems(scenario, table, located.key), scenario
 
 
@@ -172,14 +175,23 @@ def _positions(frame: MapFrame, tables: Sequence[PositionTable], altitude: float
     return points
 
 
+def _own_mission(frame: MapFrame, member: MemberTable, common: Sequence[Point]) -> list[Point]:
+    """The mission of one of several vehicles: its own, or the common one moved aside."""
+    if member.mission is not None:
+        return _positions(frame, member.mission, DEFAULT_ALTITUDE)
+    north, east = member.north_offset_m, member.east_offset_m
+    return [replace(point, north=point.north + north, east=point.east + east) for point in common]
+
+
 def _assemble(
     table: ScenarioTable,
     default_name: str,
     mission: Sequence[Point],
     obstacles: Sequence[Point],
     traffic: Sequence[Sequence[Point]],
+    missions: Sequence[Sequence[Point]],
 ) -> Scenario:
-    numbered = [o.id for o in table.obstacles] + [t.id for t in table.traffic]
+    numbered = [row.id for rows in (table.obstacles, table.traffic, table.vehicles) for row in rows]
     used = {i for i in numbered if i is not None}
     free = (i for i in range(1, len(numbered) + len(used) + 1) if i not in used)
     ids = [next(free) if i is None else i for i in numbered]
@@ -195,7 +207,7 @@ def _assemble(
         ),
         traffic=tuple(
             Traffic(i, tuple(points), t.speed_m_s, t.starts_at_s, t.motion, t.violation_radius_m)
-            for i, points, t in zip(ids[len(table.obstacles) :], traffic, table.traffic, strict=True)
+            for i, points, t in zip(ids[len(table.obstacles) :], traffic, table.traffic, strict=False)
         ),
         wind=Wind(table.wind.north_m_s, table.wind.east_m_s),
         radar=_radar(table),
@@ -212,6 +224,10 @@ def _assemble(
         time_limit=table.time_limit_s,
         seed=table.seed,
         preset=table.preset,
+        vehicles=tuple(
+            Member(i, member.name, tuple(points))
+            for i, points, member in zip(ids[-len(missions) :], missions, table.vehicles, strict=False)
+        ),
     )
 
 
@@ -226,6 +242,7 @@ def _radar(table: ScenarioTable) -> RadarSettings:
         field_of_view=math.radians(radar.field_of_view_deg),
         latency=radar.latency_s,
         false_tracks=radar.false_tracks_per_scan,
+        id_swaps=radar.id_swap_probability,
     )
 
 
@@ -237,4 +254,6 @@ def _vehicle(table: ScenarioTable) -> VehicleSettings:
         airspeed=vehicle.airspeed_m_s,
         acceptance_radius=vehicle.acceptance_radius_m,
         heading=None if vehicle.heading_deg is None else math.radians(vehicle.heading_deg),
+        position_error=vehicle.position_error_m,
+        decision_latency=vehicle.decision_latency_s,
     )

@@ -88,7 +88,7 @@ def map_key(run: Run) -> str:
             "A waypoint put in by avoidance, or standing for one of the mission’s; hollow once given up.",
         ),
     ]
-    if run.scenario.traffic:
+    if any(hazard.moving for hazard in run.hazards):
         text = "The path of traffic; its sphere is drawn where it was at the closest pass."
         signs.append((line(TRAFFIC, 2, "2 3"), text))
     return "\n".join(

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -18,6 +19,9 @@ START_ROOM = 500.0
 """No drawn obstacle's sphere comes nearer to the start than this [m]."""
 LEAST_AIR_MARGIN = 3.0
 """The wind must be slower than the airspeed by at least this [m/s]."""
+
+OWN = "own"
+"""Name of a vehicle that flies alone."""
 
 Fidelity = Literal["6dof", "kinematic"]
 Motion = Literal["6dof", "kinematic", "point"]
@@ -122,6 +126,8 @@ class RadarSettings:
     """Age of a sweep when it is delivered [s]."""
     false_tracks: float = 0.0
     """Mean number of returns per sweep from nothing at all."""
+    id_swaps: float = 0.0
+    """Chance that a sweep exchanges the identities of two obstacles for good."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,6 +143,21 @@ class VehicleSettings:
     """A waypoint counts as reached within this distance [m]; None takes the preset's."""
     heading: float | None = None
     """Direction of the nose at the start [rad]; None points along the first leg."""
+    position_error: float = 0.0
+    """Standard deviation of the horizontal position that the vehicle reports [m]."""
+    decision_latency: float = 0.0
+    """Time that a decision takes which changes the route [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """One of several own vehicles; all are alike."""
+
+    id: int
+    """How the others' radars name it."""
+    name: str
+    mission: tuple[Point, ...]
+    """The first point is where it begins."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -183,11 +204,20 @@ class Scenario:
     """All randomness of a flight comes from it, unless another one is given."""
     preset: str = "default"
     """Parameters of the avoidance core it is flown with, unless others are given."""
+    vehicles: tuple[Member, ...] = ()
+    """Several own vehicles, each with its mission; empty for one that flies `mission`."""
+
+    @property
+    def fleet(self) -> tuple[Member, ...]:
+        """All own vehicles."""
+        return self.vehicles or (Member(-1, OWN, self.mission),)
 
     @property
     def limit(self) -> float:
         """Time after which the flight is broken off [s]."""
-        return 2.0 * nominal_time(self) if self.time_limit is None else self.time_limit
+        if self.time_limit is not None:
+            return self.time_limit
+        return 2.0 * max(nominal_time(self, member.mission) for member in self.fleet)
 
 
 def ground_speed(airspeed: float, wind: Wind, north: float, east: float) -> float:
@@ -209,11 +239,12 @@ def ground_speed(airspeed: float, wind: Wind, north: float, east: float) -> floa
     return speed
 
 
-def nominal_time(scenario: Scenario) -> float:
-    """Time of the mission without obstacles: leg by leg, length over ground speed in the wind [s]."""
+def nominal_time(scenario: Scenario, mission: Sequence[Point] | None = None) -> float:
+    """Time of a mission without obstacles: leg by leg, length over ground speed in the wind [s]."""
+    mission = scenario.mission if mission is None else mission
     total = 0.0
     speed = scenario.vehicle.airspeed
-    for start, end in zip(scenario.mission, scenario.mission[1:], strict=False):
+    for start, end in pairwise(mission):
         north, east = end.north - start.north, end.east - start.east
         speed = speed if start.speed is None else start.speed
         if north or east:
@@ -238,7 +269,8 @@ def scatter(scenario: Scenario, rng: np.random.Generator) -> Scenario:
     if settings is None:
         return scenario
     start = scenario.mission[0]
-    used = {o.id for o in scenario.obstacles} | {t.id for t in scenario.traffic}
+    others = (scenario.obstacles, scenario.traffic, scenario.vehicles)
+    used = {one.id for group in others for one in group}
     free_ids = (i for i in range(1, settings.count + len(used) + 1) if i not in used)
     drawn = []
     for index in range(settings.count):
@@ -264,8 +296,17 @@ def scatter(scenario: Scenario, rng: np.random.Generator) -> Scenario:
     return replace(scenario, obstacles=scenario.obstacles + tuple(drawn), random=None)
 
 
-def streams(seed: int) -> Mapping[str, np.random.Generator]:
-    """Independent random number generators for "world", "radar" and "planner", all from one seed."""
-    names = ("world", "radar", "planner")
-    children = np.random.SeedSequence(seed).spawn(len(names))
+def streams(seed: int, vehicle: int = 0) -> Mapping[str, np.random.Generator]:
+    """Independent random number generators, all from one seed.
+
+    Parameters
+    ----------
+    seed : int
+        Of the flight.
+    vehicle : int
+        Number of the own vehicle; each has its own generators, "world" is that of number 0.
+    """
+    names = ("world", "radar", "planner", "navigation")
+    key = (len(names) + vehicle,) if vehicle else ()
+    children = np.random.SeedSequence(seed, spawn_key=key).spawn(len(names))
     return {name: np.random.default_rng(child) for name, child in zip(names, children, strict=True)}

@@ -104,6 +104,7 @@ class RadarTable(Table):
     field_of_view_deg: Annotated[float, Field(gt=0.0, le=360.0)] = 360.0
     latency_s: Annotated[float, Field(ge=0.0, le=60.0)] = 0.0
     false_tracks_per_scan: Annotated[float, Field(ge=0.0, le=100.0)] = 0.0
+    id_swap_probability: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
 
 
 class VehicleTable(Table):
@@ -114,6 +115,18 @@ class VehicleTable(Table):
     airspeed_m_s: Airspeed = 15.0
     acceptance_radius_m: Annotated[float, Field(ge=20.0, le=10_000.0)] | None = None
     heading_deg: Annotated[float, Field(ge=-360.0, le=360.0)] | None = None
+    position_error_m: Annotated[float, Field(ge=0.0, le=1_000.0)] = 0.0
+    decision_latency_s: Annotated[float, Field(ge=0.0, le=600.0)] = 0.0
+
+
+class MemberTable(Table):
+    """One of several own vehicles: its own mission, or the common one moved aside."""
+
+    name: Name
+    id: Identity | None = None
+    north_offset_m: MapCoordinate = 0.0
+    east_offset_m: MapCoordinate = 0.0
+    mission: Annotated[list[MissionTable], Field(min_length=2, max_length=10_000)] | None = None
 
 
 class RandomTable(Table):
@@ -143,3 +156,4 @@ class ScenarioTable(Table):
     random: RandomTable | None = None
     obstacles: Annotated[list[ObstacleTable], Field(max_length=100_000)] = []
     traffic: Annotated[list[TrafficTable], Field(max_length=1_000)] = []
+    vehicles: Annotated[list[MemberTable], Field(max_length=100)] = []

@@ -41,6 +41,7 @@ def to_toml(scenario: Scenario) -> str:
             field_of_view_deg=min(math.degrees(radar.field_of_view), 360.0),
             latency_s=radar.latency,
             false_tracks_per_scan=radar.false_tracks,
+            id_swap_probability=radar.id_swaps,
         ),
         _table(
             "[vehicle]",
@@ -49,6 +50,8 @@ def to_toml(scenario: Scenario) -> str:
             airspeed_m_s=vehicle.airspeed,
             acceptance_radius_m=vehicle.acceptance_radius,
             heading_deg=heading,
+            position_error_m=vehicle.position_error,
+            decision_latency_s=vehicle.decision_latency,
         ),
     ]
     if random is not None:
@@ -65,6 +68,10 @@ def to_toml(scenario: Scenario) -> str:
     parts += [_table("[[mission]]", **_point(p)) for p in scenario.mission]
     parts += [_table("[[obstacles]]", **_obstacle(o)) for o in scenario.obstacles]
     parts += [_table("[[traffic]]", **_traffic(t)) for t in scenario.traffic]
+    parts += [
+        _table("[[vehicles]]", id=m.id, name=m.name, mission=[_point(p) for p in m.mission])
+        for m in scenario.vehicles
+    ]
     return "\n".join(parts)
 
 

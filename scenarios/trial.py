@@ -15,10 +15,11 @@ import numpy as np
 from avoidance import Replace, Resume
 from avoidance.parameters import Parameters
 from scenarios.cases import KINDS, Case, scenario_of
+from scenarios.flown import Flown
 from scenarios.goals import discs, separated
 from scenarios.hangar import Hangar
 from scenarios.metrics import path_length, separations
-from scenarios.run import Flight, Flown
+from scenarios.run import Flight
 from scenarios.scenario import Fidelity, Scenario
 from scenarios.score import Score, changes_route, replacement_rule, score
 from scenarios.track import Track
