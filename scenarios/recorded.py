@@ -146,7 +146,7 @@ def _rows(file: Path) -> list[dict[str, str]]:
 
 def _is_of(row: Mapping[str, Any], vehicle: str) -> bool:
     """True for a row about a vehicle; files written before there were fleets do not name it."""
-    return not isinstance(row, Mapping) or row.get("vehicle", vehicle) == vehicle
+    return not isinstance(row, Mapping) or bool(row.get("vehicle", vehicle) == vehicle)
 
 
 def _summary(file: Path, vehicle: str) -> dict[str, Any]:

@@ -199,7 +199,8 @@ def _rows(flown: Flown, score: Score) -> list[tuple[str, str, str]]:
         rows.append(("closest approach", f"{summary['min_separation_m']:,.1f} m", nearest))
         margin = "outside every sphere" if summary["min_margin_m"] >= 0.0 else "inside a sphere"
         rows.append(("least margin", f"{summary['min_margin_m']:,.1f} m", margin))
-    rows.append(("spheres entered", str(summary["violations"]), f"of {len(score.separations)} obstacles"))
+    of = f"of {len(score.separations)} obstacles" if len(score.vehicles) == 1 else "all vehicles together"
+    rows.append(("spheres entered", str(summary["violations"]), of))
     rows.append(
         ("changes of the route", str(summary["replans"]), "" if flown.avoidance else "avoidance was off")
     )
