@@ -12,7 +12,7 @@ from avoidance.free_space import nearest_free
 from avoidance.known import Known, known_obstacles, within_reach
 from avoidance.ladder import Plan, way_round
 from avoidance.parameters import DEFAULT, Parameters
-from avoidance.problem import Intruders, WaypointProblem
+from avoidance.problem import WaypointProblem
 from avoidance.route_check import Blocked, first_blocked_leg, first_conflict
 from avoidance.tracking import Tracker, clusters
 from avoidance.types import (
@@ -34,8 +34,6 @@ from avoidance.types import (
 from avoidance.words import detour_words, replace_words, threat_words
 
 CLEAR = Keep(why="the route is clear")
-CONFLICT_SHARE = 0.75
-"""A route is left alone until an intruder would come nearer than this share of d + h."""
 HOLD_RADII = 1.5
 """Radius of a holding orbit in turn radii."""
 PATIENCE = 8
@@ -119,9 +117,9 @@ class Agent:
         if replaced is not None:
             return replaced
         reachable = within_reach(known, own, self._performance)
-        blocked = first_blocked_leg(own, route, reachable, self._performance, self._parameters.hysteresis)
+        blocked = first_blocked_leg(own, route, reachable, self._performance)
         if blocked is None:
-            blocked = first_conflict(own, route, reachable, CONFLICT_SHARE)
+            blocked = first_conflict(own, route, reachable)
         if blocked is not None:
             return self._avoid(own, route, reachable, blocked)
         return self._resume(own, route, reachable)
@@ -352,7 +350,7 @@ class Agent:
         direct = Route(origin=here, waypoints=route.waypoints[ahead:])
         if first_blocked_leg(own, direct, known, self._performance, 0.0) is not None:
             return CLEAR
-        if first_conflict(own, direct, known, 1.0) is not None:
+        if first_conflict(own, direct, known, resuming=True) is not None:
             return CLEAR
         self._avoiding_intruder = False
         return Resume(why="the intruder has passed", route=direct.waypoints)
@@ -374,4 +372,4 @@ def _least_separation(problem: WaypointProblem, radius: float) -> WaypointProble
     """The same search, content with the violation radius instead of d + h."""
     intruders = problem.intruders
     required = np.minimum(intruders.required, radius + 50.0)
-    return replace(problem, intruders=Intruders(intruders.positions, intruders.velocities, required))
+    return replace(problem, intruders=replace(intruders, required=required))

@@ -10,7 +10,7 @@ import numpy as np
 from avoidance.parameters import Parameters
 from avoidance.problem import Intruders
 from avoidance.tracking import Picture
-from avoidance.types import Floats, Ints, Ownship, Performance, Route
+from avoidance.types import Bools, Floats, Ints, Ownship, Performance, Route
 
 ALTITUDE_TOLERANCE = 15.0
 """The vehicle keeps its altitude within this [m]."""
@@ -18,6 +18,12 @@ SIGMAS = 3.0
 """Spheres grow by this many standard deviations of their position."""
 CLOSE = 3000.0
 """An unconfirmed contact nearer than this is believed at once [m]."""
+KNOWN_SPEED = 3.5
+"""Whether a track moves is undecided while the standard deviation of its speed exceeds this [m/s]."""
+LONGEST_LOOK = 600.0
+"""The uncertainty of a predicted miss grows no longer than this [s]."""
+LARGEST_DOUBT = 400.0
+"""An uncertain prediction adds no more than this to what is kept [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,6 +38,8 @@ class Known:
     """Distance that the flown curve keeps: radius at flight altitude + margin [m], shape (d,)."""
     keep_waypoint: Floats
     """Distance that a new waypoint keeps: the same + tolerance [m], shape (d,)."""
+    slack: Floats
+    """A route is left alone until it comes nearer than `keep` by this [m], shape (d,)."""
     intruder_ids: Ints
     """Radar identities of what moves, shape (q,)."""
     intruders: Intruders
@@ -65,7 +73,7 @@ def known_obstacles(
     Spheres are cut at flight altitude; an obstacle more than its radius above or below does not count.
     """
     distance = np.hypot(picture.positions[:, 0] - own.north, picture.positions[:, 1] - own.east)
-    believed = picture.confirmed | (distance < CLOSE)
+    believed = (picture.confirmed & (picture.speed_sigma < KNOWN_SPEED)) | (distance < CLOSE)
     still = believed & ~picture.moving
     moving = believed & picture.moving & (distance < parameters.reaction_distance)
     if not parameters.predict:
@@ -83,12 +91,29 @@ def known_obstacles(
         centres=picture.positions[still, :2],
         keep=keep[still],
         keep_waypoint=np.maximum(cut + tolerance + SIGMAS * picture.sigma, keep)[still],
+        slack=parameters.hysteresis + SIGMAS * picture.sigma[still],
         intruder_ids=picture.ids[moving],
-        intruders=Intruders(
-            positions=picture.positions[moving, :2],
-            velocities=picture.velocities[moving],
-            required=(cut + parameters.moving_margin + SIGMAS * picture.sigma)[moving],
-        ),
+        intruders=_intruders(picture, moving, cut, own, parameters),
+    )
+
+
+def _intruders(
+    picture: Picture, moving: Bools, cut: Floats, own: Ownship, parameters: Parameters
+) -> Intruders:
+    """What moves, with what is to be kept: more, and called a conflict later, the less sure its path is."""
+    positions, velocities = picture.positions[moving, :2], picture.velocities[moving]
+    relative = positions - np.array([own.north, own.east])
+    closing = velocities - np.array([own.velocity_north, own.velocity_east])
+    square = np.maximum((closing**2).sum(axis=1), 1e-6)
+    time = np.clip(-(relative * closing).sum(axis=1) / square, 0.0, LONGEST_LOOK)
+    doubt = np.hypot(picture.sigma[moving], picture.speed_sigma[moving] * time)
+    added = np.minimum(doubt, LARGEST_DOUBT)
+    least = cut[moving] + parameters.moving_margin
+    return Intruders(
+        positions=positions,
+        velocities=velocities,
+        required=least + added,
+        conflict=np.maximum(least - 0.5 * parameters.moving_margin - doubt, 0.0),
     )
 
 
@@ -113,6 +138,7 @@ def within_reach(known: Known, own: Ownship, performance: Performance) -> Known:
         centres=known.centres,
         keep=keep,
         keep_waypoint=known.keep_waypoint,
+        slack=known.slack,
         intruder_ids=known.intruder_ids,
         intruders=known.intruders,
     )

@@ -37,7 +37,9 @@ class Intruders:
     velocities: Floats = field(default_factory=_no_points)
     """Over ground [m/s], shape (q, 2)."""
     required: Floats = field(default_factory=lambda: np.empty(0))
-    """d + h of each [m], shape (q,)."""
+    """What a new route keeps from each: d + h and the doubt about its path [m], shape (q,)."""
+    conflict: Floats = field(default_factory=lambda: np.empty(0))
+    """A route is left alone until it comes nearer than this [m], shape (q,)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -53,7 +53,7 @@ def remaining_points(own: Ownship, route: Route, tracking_error: float, capture_
 
 
 def first_blocked_leg(
-    own: Ownship, route: Route, known: Known, performance: Performance, hysteresis: float
+    own: Ownship, route: Route, known: Known, performance: Performance, slack: float = 1.0
 ) -> Blocked | None:
     """The first leg of the remaining route that something stationary cuts, or None.
 
@@ -67,8 +67,9 @@ def first_blocked_leg(
         Obstacles.
     performance : Performance
         How it turns and follows legs.
-    hysteresis : float
-        A route is left alone until it comes this much nearer than `known.keep` [m].
+    slack : float
+        Share of `known.slack` that a route may come nearer than `known.keep`: 1 for a route that is being
+        flown, 0 for one that is to be taken up.
 
     Returns
     -------
@@ -85,7 +86,7 @@ def first_blocked_leg(
     inserted = points.shape[1] - 1 - len(route.waypoints)
     starts, ends, extra = flown_segments(points, own.course, performance)
     distance = segments_clearance(starts[0], ends[0], known.centres)
-    required = known.keep[None] - hysteresis + extra[0][:, None]
+    required = known.keep[None] - slack * known.slack[None] + extra[0][:, None]
     cut = distance < required
     if not cut.any():
         return None
@@ -112,8 +113,8 @@ def first_blocked_leg(
     return Blocked(threat, leg, blockers)
 
 
-def first_conflict(own: Ownship, route: Route, known: Known, share: float) -> Blocked | None:
-    """The first leg on which an intruder comes closer than `share` of what must be kept, or None.
+def first_conflict(own: Ownship, route: Route, known: Known, resuming: bool = False) -> Blocked | None:
+    """The first leg on which an intruder comes too close, or None; a route taken up anew keeps more.
 
     Notes
     -----
@@ -125,12 +126,13 @@ def first_conflict(own: Ownship, route: Route, known: Known, share: float) -> Bl
         return None
     points = np.array([(own.north, own.east), *((w.north, w.east) for w in route.waypoints)])[None]
     speed = max(own.ground_speed, 1.0)
+    limit = intruders.required if resuming else intruders.conflict
     worst: Blocked | None = None
     for last in range(2, points.shape[1] + 1):
         separation = route_separation(
             points[:, :last], speed, intruders.positions, intruders.velocities, INTRUDER_HORIZON
         )[0]
-        close = np.flatnonzero(separation < share * intruders.required)
+        close = np.flatnonzero(separation < limit)
         if len(close):
             order = close[np.argsort(separation[close], kind="stable")]
             nearest = int(order[0])

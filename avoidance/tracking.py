@@ -10,12 +10,16 @@ import numpy as np
 from avoidance.parameters import Parameters
 from avoidance.types import Bools, Floats, Ints, Ownship, RadarScan
 
-FLOOR = 0.5
+FLOOR = 0.2
 """Smallest standard deviation believed of a measured position [m]."""
 FIRST_SPEED = 30.0
 """Standard deviation of the speed of something seen once [m/s]."""
-MANOEUVRE = 1.0
-"""Power density of unknown accelerations [m²/s³]."""
+WANDER = 0.01
+"""Power density of the accelerations of something that flies straight on [m²/s³]."""
+MANOEUVRE = 5.0
+"""Acceleration of something that turns [m/s²]."""
+SURPRISE = 13.8
+"""A normalised innovation squared beyond this (0.1 % of a chi-square of 2 degrees) means a manoeuvre."""
 GATE = 5.0
 """A contact belongs to a track within this many standard deviations ..."""
 GATE_FLOOR = 30.0
@@ -48,6 +52,8 @@ class Picture:
     """Safety radius RS [m], shape (n,)."""
     sigma: Floats
     """Standard deviation of the horizontal position [m], shape (n,)."""
+    speed_sigma: Floats
+    """Standard deviation of the estimated speed, also of what is taken to stand [m/s], shape (n,)."""
     moving: Bools
     """True for what moves, shape (n,)."""
     confirmed: Bools
@@ -72,10 +78,10 @@ class Tracker:
     Notes
     -----
     Nearest-neighbour association inside a gate, with the radar's identity as a hint; a constant-velocity
-    Kalman filter per track with equal variance on both axes (Bar-Shalom, Li & Kirubarajan 2001, 6.3),
-    beside it the running mean for what stands still. Algorithm 2. Differs from the paper: E31, its range
-    test misses receding, crossing and same-course traffic; here a track moves when its estimated speed is
-    significant. With `memory` off the picture holds the current scan only, and Algorithm 2 decides as
+    Kalman filter per track (Bar-Shalom, Li & Kirubarajan 2001, 6.3) whose covariance is widened when an
+    innovation is too large for straight flight; beside it the running mean for what stands still.
+    Algorithm 2. Differs from the paper: E31, its range test misses receding, crossing and same-course
+    traffic; here a track moves when its estimated speed is significant. With `memory` off the picture holds the current scan only, and Algorithm 2 decides as
     printed.
     """
 
@@ -88,13 +94,11 @@ class Tracker:
         self._last_own: tuple[float, float] | None = None
         self._last_range: dict[int, float] = {}
         self._ids = np.empty(0, dtype=np.int64)
-        self._position = np.empty((0, 3))  # Kalman estimate, and its velocity
-        self._velocity = np.empty((0, 2))
+        self._state = np.empty((0, 4))  # Kalman estimate: north, east, and their rates
+        self._covariance = np.empty((0, 4, 4))
+        self._altitude = np.empty(0)
         self._mean = np.empty((0, 3))  # running mean, for what stands still
         self._weight = np.empty(0)
-        self._p11 = np.empty(0)
-        self._p12 = np.empty(0)
-        self._p22 = np.empty(0)
         self._radius = np.empty(0)
         self._hits = np.empty(0, dtype=np.int64)
         self._misses = np.empty(0, dtype=np.int64)
@@ -134,29 +138,40 @@ class Tracker:
         )
 
     def _predict(self, step: float) -> None:
-        self._position[:, :2] += step * self._velocity
-        self._p11 += step * (2.0 * self._p12 + step * self._p22) + MANOEUVRE * step**3 / 3.0
-        self._p12 += step * self._p22 + MANOEUVRE * step**2 / 2.0
-        self._p22 += MANOEUVRE * step
+        transition = np.eye(4)
+        transition[0, 2] = transition[1, 3] = step
+        self._state = self._state @ transition.T
+        unit = np.array([[step**3 / 3.0, step**2 / 2.0], [step**2 / 2.0, step]])
+        noise = WANDER * np.kron(unit, np.eye(2))
+        self._covariance = transition @ self._covariance @ transition.T + noise
 
     def _noise(self, positions: Floats, own: Ownship) -> Floats:
-        """Variance of each measured position on one axis [m²]."""
+        """Covariance of each measured position, shape (m, 2, 2) [m²]."""
         p = self._parameters
-        distance = np.hypot(positions[:, 0] - own.north, positions[:, 1] - own.east)
-        sigma = np.maximum(p.range_sigma, p.bearing_sigma * distance)
-        return np.maximum(sigma, FLOOR) ** 2 + own.position_error**2
+        sight = positions[:, :2] - np.array([own.north, own.east])
+        distance = np.maximum(np.hypot(sight[:, 0], sight[:, 1]), 1.0)
+        along = sight / distance[:, None]
+        across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+        cross = (p.bearing_sigma * distance) ** 2
+        floor = FLOOR**2 + own.position_error**2
+        return np.asarray(
+            p.range_sigma**2 * along[:, :, None] * along[:, None, :]
+            + cross[:, None, None] * across[:, :, None] * across[:, None, :]
+            + floor * np.eye(2)
+        )
 
     def _associate(self, scan: RadarScan, own: Ownship) -> Ints:
         """Row of the track that each contact belongs to; new rows are added for the others."""
         rows = np.full(len(scan.ids), -1, dtype=np.int64)
         if len(self._ids) and len(scan.ids):
             resting = ~self._moving & (self._time - self._seen > RESTING_TIME)
-            expected = np.where(resting[:, None], self._mean, self._position)
-            own_variance = np.where(resting, 1.0 / np.maximum(self._weight, 1e-12), self._p11)
+            expected = np.where(resting[:, None], self._mean[:, :2], self._state[:, :2])
+            variance = np.maximum(self._covariance[:, 0, 0], self._covariance[:, 1, 1])
+            variance = np.where(resting, 1.0 / np.maximum(self._weight, 1e-12), variance)
             offset = scan.positions[:, None, :2] - expected[None, :, :2]
             distance = np.hypot(offset[..., 0], offset[..., 1])
-            variance = own_variance[None] + self._noise(scan.positions, own)[:, None]
-            gate = np.maximum(GATE * np.sqrt(variance), GATE_FLOOR)
+            measured = np.trace(self._noise(scan.positions, own), axis1=1, axis2=2)
+            gate = np.maximum(GATE * np.sqrt(variance[None] + measured[:, None]), GATE_FLOOR)
             hinted = scan.ids[:, None] == self._ids[None]
             score = np.where(distance <= gate, distance - np.where(hinted, 1e6, 0.0), np.inf)
             while True:
@@ -169,22 +184,23 @@ class Tracker:
                 score[:, track] = np.inf
         new = np.flatnonzero(rows < 0)
         rows[new] = len(self._ids) + np.arange(len(new))
-        self._add(scan, new)
+        self._add(scan, new, own)
         return rows
 
-    def _add(self, scan: RadarScan, new: Ints) -> None:
+    def _add(self, scan: RadarScan, new: Ints, own: Ownship) -> None:
         if not len(new):
             return
         count = len(new)
         radii = scan.radii[new]
         self._ids = np.concatenate([self._ids, scan.ids[new]])
-        self._position = np.concatenate([self._position, scan.positions[new]])
-        self._velocity = np.concatenate([self._velocity, np.zeros((count, 2))])
+        state = np.concatenate([scan.positions[new, :2], np.zeros((count, 2))], axis=1)
+        covariance = np.tile(np.diag([0.0, 0.0, FIRST_SPEED**2, FIRST_SPEED**2]), (count, 1, 1))
+        covariance[:, :2, :2] = 1e3 * self._noise(scan.positions[new], own)
+        self._state = np.concatenate([self._state, state])
+        self._covariance = np.concatenate([self._covariance, covariance])
+        self._altitude = np.concatenate([self._altitude, scan.positions[new, 2]])
         self._mean = np.concatenate([self._mean, scan.positions[new]])
         self._weight = np.concatenate([self._weight, np.zeros(count)])
-        self._p11 = np.concatenate([self._p11, np.full(count, 1e12)])
-        self._p12 = np.concatenate([self._p12, np.zeros(count)])
-        self._p22 = np.concatenate([self._p22, np.full(count, FIRST_SPEED**2)])
         self._radius = np.concatenate(
             [self._radius, np.where(np.isnan(radii), self._parameters.safety_radius, radii)]
         )
@@ -194,20 +210,23 @@ class Tracker:
         self._moving = np.concatenate([self._moving, np.zeros(count, dtype=np.bool_)])
 
     def _correct(self, scan: RadarScan, rows: Ints, own: Ownship) -> None:
-        measured = scan.positions
-        noise = self._noise(measured, own)
-        total = self._p11[rows] + noise
-        gain, rate_gain = self._p11[rows] / total, self._p12[rows] / total
-        innovation = measured[:, :2] - self._position[rows, :2]
-        self._position[rows, :2] += gain[:, None] * innovation
-        self._position[rows, 2] = measured[:, 2]
-        self._velocity[rows] += rate_gain[:, None] * innovation
-        self._p22[rows] -= rate_gain * self._p12[rows]
-        self._p12[rows] *= 1.0 - gain
-        self._p11[rows] *= 1.0 - gain
-        self._weight[rows] += 1.0 / noise
-        shift = measured - self._mean[rows]
-        self._mean[rows] += shift / (noise * self._weight[rows])[:, None]
+        noise = self._noise(scan.positions, own)
+        innovation = scan.positions[:, :2] - self._state[rows, :2]
+        covariance = self._covariance[rows]
+        inverse = np.linalg.inv(covariance[:, :2, :2] + noise)
+        surprise = np.einsum("mi,mij,mj->m", innovation, inverse, innovation)
+        turning = (surprise > SURPRISE) & self._moving[rows]
+        if turning.any():
+            covariance[turning] += np.diag([1.0, 1.0, 4.0, 4.0]) * (0.5 * MANOEUVRE) ** 2
+            inverse = np.linalg.inv(covariance[:, :2, :2] + noise)
+        gain = covariance[:, :, :2] @ inverse
+        self._state[rows] += np.einsum("mij,mj->mi", gain, innovation)
+        self._covariance[rows] = covariance - gain @ covariance[:, :2, :]
+        self._altitude[rows] = scan.positions[:, 2]
+        variance = np.maximum(noise[:, 0, 0], noise[:, 1, 1])
+        self._weight[rows] += 1.0 / variance
+        shift = scan.positions - self._mean[rows]
+        self._mean[rows] += shift / (variance * self._weight[rows])[:, None]
         self._ids[rows] = scan.ids
         known = ~np.isnan(scan.radii)
         self._radius[rows[known]] = np.maximum(self._radius[rows[known]], scan.radii[known])
@@ -219,16 +238,19 @@ class Tracker:
 
     def _classify(self, rows: Ints) -> None:
         """Moving or still, by the significance of the estimated speed, with hysteresis; only what is seen."""
-        speed = np.hypot(self._velocity[:, 0], self._velocity[:, 1])
-        sigma = np.sqrt(self._p22)
+        speed = np.hypot(self._state[:, 2], self._state[:, 3])
+        sigma = self._speed_sigma()
         starts = (speed > np.maximum(MOVING_SPEED, MOVING_SIGMAS * sigma)) & (self._hits >= 2)
         stops = speed < np.maximum(STILL_SPEED, STILL_SIGMAS * sigma)
         moving = self._moving.copy()
         moving[rows] = np.where(self._moving, ~stops, starts)[rows]
         stopped = self._moving & ~moving
-        self._mean[stopped] = self._position[stopped]
-        self._weight[stopped] = 1.0 / np.maximum(self._p11[stopped], FLOOR**2)
+        self._mean[stopped, :2] = self._state[stopped, :2]
+        self._weight[stopped] = 1.0 / np.maximum(self._covariance[stopped, 0, 0], FLOOR**2)
         self._moving = moving
+
+    def _speed_sigma(self) -> Floats:
+        return np.sqrt(np.maximum(self._covariance[:, 2, 2], self._covariance[:, 3, 3]))
 
     def _forget(self, rows: Ints) -> None:
         tentative = (self._hits < CONFIRMING_HITS) & (self._misses >= TENTATIVE_MISSES)
@@ -236,7 +258,7 @@ class Tracker:
         keep = ~(tentative | lost)
         if keep.all():
             return
-        for name in ("ids", "position", "velocity", "mean", "weight", "p11", "p12", "p22", "radius"):
+        for name in ("ids", "state", "covariance", "altitude", "mean", "weight", "radius"):
             setattr(self, f"_{name}", getattr(self, f"_{name}")[keep])
         for name in ("hits", "misses", "seen", "moving"):
             setattr(self, f"_{name}", getattr(self, f"_{name}")[keep])
@@ -247,9 +269,11 @@ class Tracker:
         before = self._picture
         moving = self._moving
         self._settled = not moving.any() and bool((self._hits >= CONFIRMING_HITS).all())
-        positions = np.where(moving[:, None], self._position, self._mean)
+        tracked = np.column_stack([self._state[:, :2], self._altitude])
+        positions = np.where(moving[:, None], tracked, self._mean)
         confirmed = self._hits >= CONFIRMING_HITS
-        sigma = np.where(moving, np.sqrt(self._p11), np.sqrt(1.0 / np.maximum(self._weight, 1e-12)))
+        variance = np.maximum(self._covariance[:, 0, 0], self._covariance[:, 1, 1])
+        sigma = np.sqrt(np.where(moving, variance, 1.0 / np.maximum(self._weight, 1e-12)))
         sigma = np.where(sigma <= 2.0 * FLOOR, 0.0, sigma)
         if before is not None and _same_still(before, self._ids, positions, moving, confirmed):
             positions = np.where(moving[:, None], positions, before.positions)
@@ -258,9 +282,10 @@ class Tracker:
         self._picture = Picture(
             ids=self._ids.copy(),
             positions=positions,
-            velocities=np.where(moving[:, None], self._velocity, 0.0),
+            velocities=np.where(moving[:, None], self._state[:, 2:], 0.0),
             radii=self._radius.copy(),
             sigma=sigma,
+            speed_sigma=self._speed_sigma(),
             moving=moving.copy(),
             confirmed=confirmed,
             version=self._version,
@@ -293,6 +318,7 @@ class Tracker:
             velocities=np.zeros((count, 2)),
             radii=radii,
             sigma=np.zeros(count),
+            speed_sigma=np.zeros(count),
             moving=moving.astype(np.bool_),
             confirmed=np.ones(count, dtype=np.bool_),
             version=self._version,

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -25,17 +27,17 @@ def known(obstacles: list[tuple[float, float]], own: Ownship, way: Route, altitu
 def test_what_lies_behind_the_vehicle_blocks_nothing() -> None:
     """Erratum E17: an infinite line flags obstacles already passed."""
     own, way = ownship(5000.0), route((40_000.0, 0.0))
-    assert first_blocked_leg(own, way, known([(2000.0, 0.0)], own, way), PERFORMANCE, 10.0) is None
+    assert first_blocked_leg(own, way, known([(2000.0, 0.0)], own, way), PERFORMANCE) is None
 
 
 def test_what_lies_beyond_the_end_of_the_leg_blocks_nothing() -> None:
     own, way = ownship(), route((10_000.0, 0.0), (10_000.0, 30_000.0))
-    assert first_blocked_leg(own, way, known([(12_000.0, 0.0)], own, way), PERFORMANCE, 10.0) is None
+    assert first_blocked_leg(own, way, known([(12_000.0, 0.0)], own, way), PERFORMANCE) is None
 
 
 def test_a_later_leg_is_found_too() -> None:
     own, way = ownship(), route((6000.0, 0.0), (6000.0, 30_000.0))
-    blocked = first_blocked_leg(own, way, known([(6400.0, 5000.0)], own, way), PERFORMANCE, 10.0)
+    blocked = first_blocked_leg(own, way, known([(6400.0, 5000.0)], own, way), PERFORMANCE)
     assert blocked is not None
     assert blocked.leg == 1
     assert blocked.threat.clearance == pytest.approx(400.0)
@@ -55,7 +57,7 @@ def test_the_inside_of_a_corner_counts() -> None:
     """The legs keep clear of it, the turn between them would not."""
     own, way = ownship(), route((6000.0, 0.0), (12_000.0, 6000.0))
     beside = np.array([6000.0, 0.0]) + 1055.0 * np.array([-np.sin(np.pi / 8), np.cos(np.pi / 8)])
-    blocked = first_blocked_leg(own, way, known([(beside[0], beside[1])], own, way), PERFORMANCE, 0.0)
+    blocked = first_blocked_leg(own, way, known([(beside[0], beside[1])], own, way), PERFORMANCE, slack=0.0)
     assert blocked is not None
 
 
@@ -73,10 +75,12 @@ def test_circles_shrink_where_the_margin_cannot_be_kept_any_more() -> None:
 
 def test_a_conflict_names_time_and_distance() -> None:
     own, way = ownship(), route((40_000.0, 0.0))
-    oncoming = Intruders(np.array([[9000.0, 200.0]]), np.array([[-15.0, 0.0]]), np.array([1300.0]))
+    oncoming = Intruders(
+        np.array([[9000.0, 200.0]]), np.array([[-15.0, 0.0]]), np.array([1300.0]), np.array([1150.0])
+    )
     empty = known([], own, way)
-    world = Known(empty.ids, empty.centres, empty.keep, empty.keep_waypoint, np.array([7]), oncoming)
-    blocked = first_conflict(own, way, world, 1.0)
+    world = replace(empty, intruder_ids=np.array([7]), intruders=oncoming)
+    blocked = first_conflict(own, way, world)
     assert blocked is not None
     assert blocked.threat.moving
     assert blocked.threat.ids == (7,)
