@@ -7,7 +7,10 @@ from collections import Counter
 from collections.abc import Callable
 from itertools import pairwise
 
+import numpy as np
+
 from scenarios.errors import Problem
+from scenarios.fence import allowed
 from scenarios.scenario import LEAST_AIR_MARGIN, TRAFFIC_VIOLATION_RADIUS, Point, Scenario
 from scenarios.schema import ScenarioTable
 
@@ -24,6 +27,7 @@ def semantic_problems(scenario: Scenario, table: ScenarioTable, key: Key) -> lis
         *_start(scenario, key),
         *_traffic(scenario, key),
         *_vehicles(scenario, key),
+        *_fence(scenario, key),
         *_random(scenario),
         *_aircraft(scenario),
         *wind_problems(scenario),
@@ -106,6 +110,21 @@ def _vehicles(scenario: Scenario, key: Key) -> list[Problem]:
                 f"{TRAFFIC_VIOLATION_RADIUS:g} m apart"
             )
             problems.append(Problem(key("vehicles", index), None, message))
+    return problems
+
+
+def _fence(scenario: Scenario, key: Key) -> list[Problem]:
+    problems = []
+    for index, member in enumerate(scenario.fleet):
+        outside = [
+            number
+            for number, point in enumerate(member.mission, start=1)
+            if not allowed(scenario.geofence, np.array([[point.north, point.east]]))[0]
+        ]
+        if outside:
+            place = key("vehicles", index) if scenario.vehicles else key("mission", outside[0] - 1)
+            which = ", ".join(map(str, outside))
+            problems.append(Problem(place, None, f"waypoint {which} lies outside the geofence"))
     return problems
 
 

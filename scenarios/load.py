@@ -17,6 +17,7 @@ from offboard.frames import MapFrame
 from scenarios import explain
 from scenarios.check import semantic_problems
 from scenarios.errors import Problem, ScenarioError
+from scenarios.fence import FenceArea
 from scenarios.scenario import (
     Home,
     Member,
@@ -29,13 +30,13 @@ from scenarios.scenario import (
     VehicleSettings,
     Wind,
 )
-from scenarios.schema import MemberTable, PositionTable, ScenarioTable
+from scenarios.schema import FenceTable, MemberTable, PlaceTable, PositionTable, ScenarioTable
 
 CATALOGUE = Path(__file__).parent / "catalogue"
 DEFAULT_SCENARIO = "table4"
 DEFAULT_ALTITUDE = 200.0
 """Altitude of a waypoint that gives none [m]."""
-LISTS = ("mission", "obstacles", "traffic", "vehicles")
+LISTS = ("mission", "obstacles", "traffic", "vehicles", "geofence")
 
 
 def catalogue_names() -> list[str]:
@@ -157,6 +158,7 @@ def _build(located: _Located, default_name: str) -> tuple[list[Problem], Scenari
     traffic = [_positions(frame, flight.waypoints, cruise) for flight in table.traffic]
     missions = [_own_mission(frame, member, mission) for member in table.vehicles]
     scenario = _assemble(table, default_name, mission, obstacles, traffic, missions)
+    scenario = replace(scenario, geofence=tuple(_area(frame, area) for area in table.geofence))
     return semantic_problems(scenario, table, located.key), scenario
 
 
@@ -164,15 +166,28 @@ def _positions(frame: MapFrame, tables: Sequence[PositionTable], altitude: float
     """Map points; `altitude` [m] is for those that give none."""
     points = []
     for table in tables:
-        if table.latitude_deg is not None and table.longitude_deg is not None:
-            north, east = frame.to_map(table.latitude_deg, table.longitude_deg)
-        elif table.north_m is not None and table.east_m is not None:
-            north, east = table.north_m, table.east_m
-        else:
-            raise ValueError("a position table without a position was not validated")
+        north, east = _place(frame, table)
         height = altitude if table.altitude_m is None else table.altitude_m
         points.append(Point(north, east, height, getattr(table, "speed_m_s", None)))
     return points
+
+
+def _area(frame: MapFrame, table: FenceTable) -> FenceArea:
+    """One area of the geofence."""
+    include = table.type == "include"
+    if table.centre is not None and table.radius_m is not None:
+        return FenceArea(include, centre=_place(frame, table.centre), radius=table.radius_m)
+    return FenceArea(include, corners=tuple(_place(frame, corner) for corner in table.polygon or ()))
+
+
+def _place(frame: MapFrame, table: PlaceTable) -> tuple[float, float]:
+    """North and east of home [m]."""
+    if table.latitude_deg is not None and table.longitude_deg is not None:
+        north, east = frame.to_map(table.latitude_deg, table.longitude_deg)
+        return float(north), float(east)
+    if table.north_m is None or table.east_m is None:
+        raise ValueError("a position table without a position was not validated")
+    return table.north_m, table.east_m
 
 
 def _own_mission(frame: MapFrame, member: MemberTable, common: Sequence[Point]) -> list[Point]:

@@ -19,6 +19,7 @@ from avoidance.types import Floats
 from avoidance.yardsticks import length_to_optimum, search_gap
 from offboard.plan_files import PlanFile, write_plan
 from scenarios.errors import RunDirectoryError
+from scenarios.fence import geofence_data
 from scenarios.flown import Flown, LoggedDecision
 from scenarios.scenario import OWN, Obstacle, Scenario
 from scenarios.score import Score
@@ -138,7 +139,9 @@ def _write_files(directory: Path, flown: Flown, score: Score) -> None:
         (directory / name).write_text(text, encoding="utf-8", newline="\n")
     cruise = flown.scenario.vehicle.airspeed
     for number, vehicle in enumerate(flown.vehicles):
-        plan = PlanFile(vehicle.plan, home.latitude_deg, home.longitude_deg, home.altitude_m, cruise)
+        place = (home.latitude_deg, home.longitude_deg, home.altitude_m)
+        fence = geofence_data(flown.scenario.geofence, flown.frame)
+        plan = PlanFile(vehicle.plan, *place, cruise, fence)
         write_plan(directory / plan_name(vehicle.name, number), plan)
 
 

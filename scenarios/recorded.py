@@ -16,6 +16,7 @@ from offboard.errors import PlanFileError
 from offboard.frames import MapFrame
 from offboard.plan_files import read_plan
 from scenarios.errors import RunDirectoryError, ScenarioError
+from scenarios.fence import breaches
 from scenarios.load import load
 from scenarios.metrics import path_length, separations
 from scenarios.record import plan_name
@@ -112,7 +113,13 @@ def read_run(directory: Path, vehicle: str | None = None) -> Recorded:
 
 def recomputed(run: Recorded) -> dict[str, Any]:
     """Those figures of the summary that the files determine."""
+    outside = breaches(run.track, run.scenario.geofence)
+    fence = {
+        "fence_breaches": len(outside),
+        "outside_fence_s": round(sum(end - begin for begin, end in outside), 3),
+    }
     return {
+        **(fence if run.scenario.geofence else {}),
         **approach_summary(separations(run.track, run.obstacles, run.traffic)),
         "path_length_m": round(path_length(run.track.positions), 3),
         "plan_length_m": round(run.plan_length, 3),

@@ -24,6 +24,8 @@ def verdict(run: Run) -> tuple[str, str, str]:
         times = "once" if violations == 1 else f"{violations} times"
         headline = f"A safety sphere was entered {times}"
         tone = "entered"
+    elif summary.get("fence_breaches"):
+        headline, tone = "The geofence was left", "entered"
     else:
         headline, tone = ("Flown safely", "safe") if completed else ("Mission not completed", "unfinished")
     flown = (

@@ -11,6 +11,8 @@ from typing import Literal
 
 import numpy as np
 
+from scenarios.fence import FenceArea
+
 NEAR = 3000.0
 """Within this distance of anything that could be hit, flights are recorded at 10 Hz [m]."""
 TRAFFIC_VIOLATION_RADIUS = 1000.0
@@ -204,6 +206,8 @@ class Scenario:
     """All randomness of a flight comes from it, unless another one is given."""
     preset: str = "default"
     """Parameters of the avoidance core it is flown with, unless others are given."""
+    geofence: tuple[FenceArea, ...] = ()
+    """Where vehicles may be; empty for everywhere."""
     vehicles: tuple[Member, ...] = ()
     """Several own vehicles, each with its mission; empty for one that flies `mission`."""
 

@@ -40,14 +40,13 @@ class HomeTable(Table):
     altitude_m: Annotated[float, Field(ge=-500.0, le=6_000.0)] = 600.0
 
 
-class PositionTable(Table):
-    """A point by map metres or by latitude and longitude; altitude above home."""
+class PlaceTable(Table):
+    """A point by map metres or by latitude and longitude."""
 
     north_m: MapCoordinate | None = None
     east_m: MapCoordinate | None = None
     latitude_deg: Latitude | None = None
     longitude_deg: Longitude | None = None
-    altitude_m: Altitude | None = None
 
     @model_validator(mode="after")
     def _one_kind_of_position(self) -> Self:
@@ -58,6 +57,12 @@ class PositionTable(Table):
             message = "needs north_m and east_m, or latitude_deg and longitude_deg (both, and not mixed)"
             raise PydanticCustomError("position", message)
         return self
+
+
+class PositionTable(PlaceTable):
+    """A point with its altitude above home."""
+
+    altitude_m: Altitude | None = None
 
 
 class MissionTable(PositionTable):
@@ -139,6 +144,22 @@ class RandomTable(Table):
     largest_safety_radius_m: SafetyRadius | None = None
 
 
+class FenceTable(Table):
+    """One area of the geofence: a polygon, or a circle."""
+
+    type: Literal["include", "exclude"]
+    polygon: Annotated[list[PlaceTable], Field(min_length=3, max_length=1_000)] | None = None
+    centre: PlaceTable | None = None
+    radius_m: Annotated[float, Field(gt=0.0, le=1_000_000.0)] | None = None
+
+    @model_validator(mode="after")
+    def _one_shape(self) -> Self:
+        circle = (self.centre, self.radius_m)
+        if (self.polygon is None) == (circle == (None, None)) or (self.polygon is None and None in circle):
+            raise PydanticCustomError("position", "needs polygon, or centre and radius_m (and not both)")
+        return self
+
+
 class ScenarioTable(Table):
     """A whole scenario file."""
 
@@ -157,3 +178,4 @@ class ScenarioTable(Table):
     obstacles: Annotated[list[ObstacleTable], Field(max_length=100_000)] = []
     traffic: Annotated[list[TrafficTable], Field(max_length=1_000)] = []
     vehicles: Annotated[list[MemberTable], Field(max_length=100)] = []
+    geofence: Annotated[list[FenceTable], Field(max_length=100)] = []

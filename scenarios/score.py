@@ -16,6 +16,7 @@ from avoidance.types import Floats
 from offboard.frames import MapFrame
 from offboard.mission import MissionPlan
 from scenarios import __version__
+from scenarios.fence import breaches
 from scenarios.flown import Flown, FlownVehicle, LoggedDecision
 from scenarios.goals import Goal, ReplacementRule, discs, goals
 from scenarios.metrics import Separation, first_pass, nearest_pass, path_length, separations
@@ -64,8 +65,9 @@ class Score:
 
     @property
     def safe(self) -> bool:
-        """True if all missions were completed and no sphere entered."""
-        return bool(self.summary["completed"]) and self.summary["violations"] == 0
+        """True if all missions were completed, no sphere entered and the geofence kept."""
+        kept = self.summary["violations"] == 0 and not self.summary.get("fence_breaches")
+        return bool(self.summary["completed"]) and kept
 
     @property
     def fates(self) -> tuple[Fate, ...]:
@@ -125,6 +127,10 @@ def score_vehicle(flown: Flown, vehicle: FlownVehicle) -> VehicleScore:
         "replans": sum(changes_route(entry) for entry in vehicle.decisions),
         "decision_ms": _decision_times(vehicle.decisions),
     }
+    if flown.scenario.geofence:
+        outside = breaches(vehicle.track, flown.scenario.geofence)
+        figures["fence_breaches"] = len(outside)
+        figures["outside_fence_s"] = round(sum(end - begin for begin, end in outside), 3)
     if names:
         figures["violations_of_vehicles"] = sum(s.entries for s in approaches if s.moving and s.id in names)
     return VehicleScore(vehicle.name, figures, tuple(fates), tuple(approaches))
@@ -142,6 +148,11 @@ def fleet_figures(vehicles: Sequence[dict[str, Any]]) -> dict[str, Any]:
 
     met = [figures for figures in vehicles if figures["min_separation_m"] is not None]
     closest = min(met, key=lambda figures: figures["min_separation_m"], default=vehicles[0])
+    fence: dict[str, Any] = {
+        key: round(sum(figures[key] for figures in vehicles), 3)
+        for key in ("fence_breaches", "outside_fence_s")
+        if key in vehicles[0]
+    }
     twice = sum(figures["violations_of_vehicles"] for figures in vehicles) // 2
     return {
         "completed": all(figures["completed"] for figures in vehicles),
@@ -157,6 +168,7 @@ def fleet_figures(vehicles: Sequence[dict[str, Any]]) -> dict[str, Any]:
         "waypoints_replaced": sum(figures["waypoints_replaced"] for figures in vehicles),
         "replans": sum(figures["replans"] for figures in vehicles),
         "decision_ms": None,
+        **fence,
     }
 
 

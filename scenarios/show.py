@@ -175,6 +175,9 @@ def _verdict(flown: Flown, score: Score) -> str:
     if violations:
         times = "once" if violations == 1 else f"{violations} times"
         parts.append(f"A safety sphere was entered {times}.")
+    if score.summary.get("fence_breaches"):
+        times = score.summary["fence_breaches"]
+        parts.append(f"The geofence was left {'once' if times == 1 else f'{times} times'}.")
     if not parts:
         return "Flown safely: the mission was completed and no safety sphere entered."
     return " ".join(parts)

@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Iterable, Mapping
 
+from scenarios.fence import FenceArea
 from scenarios.scenario import Obstacle, Point, Scenario, Traffic
 
 
@@ -68,6 +69,7 @@ def to_toml(scenario: Scenario) -> str:
     parts += [_table("[[mission]]", **_point(p)) for p in scenario.mission]
     parts += [_table("[[obstacles]]", **_obstacle(o)) for o in scenario.obstacles]
     parts += [_table("[[traffic]]", **_traffic(t)) for t in scenario.traffic]
+    parts += [_table("[[geofence]]", **_area(area)) for area in scenario.geofence]
     parts += [
         _table("[[vehicles]]", id=m.id, name=m.name, mission=[_point(p) for p in m.mission])
         for m in scenario.vehicles
@@ -99,6 +101,17 @@ def _obstacle(obstacle: Obstacle) -> dict[str, object]:
         "altitude_m": obstacle.altitude,
         "safety_radius_m": obstacle.safety_radius,
         "appears_at_s": obstacle.appears_at,
+    }
+
+
+def _area(area: FenceArea) -> dict[str, object]:
+    corners = [{"north_m": north, "east_m": east} for north, east in area.corners]
+    centre = None if area.centre is None else {"north_m": area.centre[0], "east_m": area.centre[1]}
+    return {
+        "type": "include" if area.include else "exclude",
+        "polygon": corners or None,
+        "centre": centre,
+        "radius_m": area.radius,
     }
 
 
