@@ -13,10 +13,11 @@ import math
 import os
 import tempfile
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from offboard.errors import PlanFileError
+from offboard.geofence import GeofenceData, fence_object, fence_of
 from offboard.mission import CameraAction, MissionItem, MissionPlan, VehicleAction
 
 WAYPOINT, LOITER_TIME, LAND, TAKEOFF, CHANGE_SPEED = 16, 19, 21, 22, 178
@@ -59,6 +60,8 @@ class PlanFile:
     """Planned home position, above mean sea level [m]."""
     cruise_speed_m_s: float
     """Speed where the mission gives none [m/s]."""
+    geofence: GeofenceData = field(default_factory=GeofenceData)
+    """Where the vehicle may be; whoever flies the plan must keep to it."""
 
 
 def write_plan(file: Path, content: PlanFile) -> None:
@@ -93,7 +96,7 @@ def write_plan(file: Path, content: PlanFile) -> None:
             ],
             "items": entries,
         },
-        "geoFence": {"version": 2, "circles": [], "polygons": []},
+        "geoFence": fence_object(content.geofence),
         "rallyPoints": {"version": 2, "points": []},
     }
     try:
@@ -111,7 +114,12 @@ def read_plan(file: Path) -> PlanFile:
         If the file is missing, is no plan, or holds something that cannot be flown as it says; names the
         item, counted from 0 as in the file.
     """
-    mission = _mission_object(file)
+    document = _document(file)
+    mission = _mission_object(file, document)
+    try:
+        geofence = fence_of(document.get("geoFence"))
+    except ValueError as error:
+        raise PlanFileError(file, f"geoFence: {error}") from error
     latitude_deg, longitude_deg, altitude_m = _numbers(file, mission, "plannedHomePosition", 3)
     (speed,) = _numbers(file, {"cruiseSpeed": [mission.get("cruiseSpeed", 15.0)]}, "cruiseSpeed", 1)
     entries = mission.get("items")
@@ -130,7 +138,7 @@ def read_plan(file: Path) -> PlanFile:
             speed = params[1]
     if not items:
         raise PlanFileError(file, "mission.items holds nothing to fly to")
-    return PlanFile(MissionPlan.of(items), latitude_deg, longitude_deg, altitude_m, speed)
+    return PlanFile(MissionPlan.of(items), latitude_deg, longitude_deg, altitude_m, speed, geofence)
 
 
 def _entry(item: MissionItem, number: int) -> dict[str, object]:
@@ -191,8 +199,8 @@ def _write_whole(file: Path, text: str) -> None:
         raise
 
 
-def _mission_object(file: Path) -> Mapping[str, object]:
-    """The mission object of a plan file whose outer form is right."""
+def _document(file: Path) -> Mapping[str, object]:
+    """A plan file whose outer form is right."""
     try:
         document = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as error:
@@ -204,9 +212,11 @@ def _mission_object(file: Path) -> Mapping[str, object]:
         raise PlanFileError(file, 'is no plan: fileType must be "Plan"')
     if document.get("version") != 1:
         raise PlanFileError(file, f"version = {document.get('version')}, must be 1")
-    fence = document.get("geoFence")
-    if isinstance(fence, dict) and (fence.get("circles") or fence.get("polygons")):
-        raise PlanFileError(file, "has a geofence, which would not be kept to: remove it first")
+    return document
+
+
+def _mission_object(file: Path, document: Mapping[str, object]) -> Mapping[str, object]:
+    """The mission object of a plan file."""
     mission = document.get("mission")
     if not isinstance(mission, dict) or mission.get("version") != 2:
         raise PlanFileError(file, "mission is missing or its version is not 2")

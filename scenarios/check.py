@@ -5,9 +5,13 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable
+from itertools import pairwise
+
+import numpy as np
 
 from scenarios.errors import Problem
-from scenarios.scenario import LEAST_AIR_MARGIN, Scenario
+from scenarios.fence import allowed
+from scenarios.scenario import LEAST_AIR_MARGIN, TRAFFIC_VIOLATION_RADIUS, Point, Scenario
 from scenarios.schema import ScenarioTable
 
 Key = Callable[..., str]
@@ -22,6 +26,8 @@ def semantic_problems(scenario: Scenario, table: ScenarioTable, key: Key) -> lis
         *_ids(scenario, table, key),
         *_start(scenario, key),
         *_traffic(scenario, key),
+        *_vehicles(scenario, key),
+        *_fence(scenario, key),
         *_random(scenario),
         *_aircraft(scenario),
         *wind_problems(scenario),
@@ -30,7 +36,8 @@ def semantic_problems(scenario: Scenario, table: ScenarioTable, key: Key) -> lis
 
 def wind_problems(scenario: Scenario) -> list[Problem]:
     """A wind that the vehicle cannot be flown in."""
-    speeds = [scenario.vehicle.airspeed, *(p.speed for p in scenario.mission if p.speed is not None)]
+    points = [point for member in scenario.fleet for point in member.mission]
+    speeds = [scenario.vehicle.airspeed, *(p.speed for p in points if p.speed is not None)]
     allowed = min(speeds) - LEAST_AIR_MARGIN
     if scenario.wind.speed <= allowed:
         return []
@@ -52,27 +59,28 @@ def _mission(scenario: Scenario, key: Key) -> list[Problem]:
 
 
 def _ids(scenario: Scenario, table: ScenarioTable, key: Key) -> list[Problem]:
-    counts = Counter(o.id for o in scenario.obstacles) + Counter(t.id for t in scenario.traffic)
+    groups = (scenario.obstacles, scenario.traffic, scenario.vehicles)
+    counts = Counter(one.id for group in groups for one in group)
     places = [("obstacles", i, row.id) for i, row in enumerate(table.obstacles)]
     places += [("traffic", i, row.id) for i, row in enumerate(table.traffic)]
+    places += [("vehicles", i, row.id) for i, row in enumerate(table.vehicles)]
     seen = set()
     problems = []
     for name, index, identity in places:
         if identity is None or counts[identity] < 2:
             continue
         if identity in seen:
-            message = "is used twice; ids must differ among all obstacles and traffic"
+            message = "is used twice; ids must differ among all obstacles, traffic and vehicles"
             problems.append(Problem(key(name, index, "id"), identity, message))
         seen.add(identity)
     return problems
 
 
 def _start(scenario: Scenario, key: Key) -> list[Problem]:
-    start = scenario.mission[0]
     problems = []
     for index, obstacle in enumerate(scenario.obstacles):
-        away = (obstacle.north - start.north, obstacle.east - start.east, obstacle.altitude - start.altitude)
-        distance = math.hypot(*away)
+        centre = Point(obstacle.north, obstacle.east, obstacle.altitude)
+        distance = min(_apart(centre, member.mission[0]) for member in scenario.fleet)
         if distance <= obstacle.safety_radius and obstacle.appears_at == 0.0:
             message = (
                 f"the start is inside its sphere: {distance:.0f} m from its centre, which must be more than "
@@ -82,6 +90,46 @@ def _start(scenario: Scenario, key: Key) -> list[Problem]:
                 Problem(key("obstacles", index, "safety_radius_m"), obstacle.safety_radius, message)
             )
     return problems
+
+
+def _vehicles(scenario: Scenario, key: Key) -> list[Problem]:
+    problems = []
+    for index, member in enumerate(scenario.vehicles):
+        before = scenario.vehicles[:index]
+        if any(member.name == other.name for other in before):
+            problems.append(Problem(key("vehicles", index, "name"), member.name, "is used twice"))
+        for start, end in pairwise(member.mission):
+            if math.hypot(end.north - start.north, end.east - start.east) < 1.0:
+                message = "two waypoints in a row must be at least 1 m apart"
+                problems.append(Problem(key("vehicles", index, "mission"), None, message))
+                break
+        distance = min((_apart(member.mission[0], other.mission[0]) for other in before), default=math.inf)
+        if distance <= TRAFFIC_VIOLATION_RADIUS:
+            message = (
+                f"begins {distance:.0f} m from another vehicle; they must begin more than "
+                f"{TRAFFIC_VIOLATION_RADIUS:g} m apart"
+            )
+            problems.append(Problem(key("vehicles", index), None, message))
+    return problems
+
+
+def _fence(scenario: Scenario, key: Key) -> list[Problem]:
+    problems = []
+    for index, member in enumerate(scenario.fleet):
+        outside = [
+            number
+            for number, point in enumerate(member.mission, start=1)
+            if not allowed(scenario.geofence, np.array([[point.north, point.east]]))[0]
+        ]
+        if outside:
+            place = key("vehicles", index) if scenario.vehicles else key("mission", outside[0] - 1)
+            which = ", ".join(map(str, outside))
+            problems.append(Problem(place, None, f"waypoint {which} lies outside the geofence"))
+    return problems
+
+
+def _apart(a: Point, b: Point) -> float:
+    return math.dist((a.north, a.east, a.altitude), (b.north, b.east, b.altitude))
 
 
 def _traffic(scenario: Scenario, key: Key) -> list[Problem]:
@@ -106,11 +154,15 @@ def _random(scenario: Scenario) -> list[Problem]:
     settings = scenario.random
     if settings is None:
         return []
-    least = max(settings.clear_of_start, settings.safety_radius) / 4.0
-    if settings.sigma >= least:
-        return []
-    message = f"must be at least {least:g}, or nearly every draw falls too close to the start"
-    return [Problem("random.sigma_m", settings.sigma, message)]
+    problems = []
+    if settings.largest < settings.safety_radius:
+        message = f"must be at least safety_radius_m, {settings.safety_radius:g}"
+        problems.append(Problem("random.largest_safety_radius_m", settings.largest, message))
+    least = max(settings.clear_of_start, settings.largest) / 4.0
+    if settings.sigma < least:
+        message = f"must be at least {least:g}, or nearly every draw falls too close to the start"
+        problems.append(Problem("random.sigma_m", settings.sigma, message))
+    return problems
 
 
 def _aircraft(scenario: Scenario) -> list[Problem]:

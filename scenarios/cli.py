@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import math
 import signal
 import sys
@@ -67,10 +68,15 @@ def fly(
         str, typer.Argument(help="Name from `sidestep list`, or the path of a .toml file.")
     ] = "table4",
     *,
-    seed: Annotated[int, typer.Option(min=0, help="All randomness comes from it.")] = 0,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="All randomness comes from it; the scenario's own if not given.")
+    ] = None,
     preset: Annotated[
-        str, typer.Option(help="Avoidance as good as we can (default), or as printed (paper).")
-    ] = "default",
+        str | None,
+        typer.Option(
+            help="Avoidance as good as we can (default) or as printed (paper); else the scenario's."
+        ),
+    ] = None,
     wind: Annotated[
         str | None,
         typer.Option(metavar="N,E", help="Steady wind towards north and east [m/s], such as 3,-4."),
@@ -104,8 +110,11 @@ def fly(
     from scenarios.scenario import FIDELITIES, Wind  # noqa: PLC0415
 
     with _errors():
-        parameters = run.preset(preset)
+        if preset is not None:
+            run.preset(preset)
         chosen = load(scenario)
+        seed = chosen.seed if seed is None else seed
+        parameters = run.preset(preset or chosen.preset)
         if wind is not None:
             chosen = replace(chosen, wind=Wind(*_two_numbers(wind)))
             if problems := wind_problems(chosen):
@@ -115,6 +124,7 @@ def fly(
                 known = ", ".join(FIDELITIES)
                 raise ScenarioError("--fidelity", f"{fidelity!r} is unknown; known: {known}")
             chosen = replace(chosen, vehicle=replace(chosen.vehicle, fidelity=FIDELITIES[fidelity]))
+        chosen = replace(chosen, seed=seed, preset=parameters.name)
         chosen = run.prepare(chosen, seed, obstacles=obstacles)
         directory = output or free_directory(chosen, seed)
         check_target(directory)
@@ -142,16 +152,65 @@ def replay(
 
     Exit codes: 0 the figures agree; 1 they do not; 2 the directory cannot be read.
     """
-    from scenarios.recorded import differences, read_run  # noqa: PLC0415
+    from scenarios.recorded import differences, read_fleet  # noqa: PLC0415
     from scenarios.replay import timeline  # noqa: PLC0415
     from scenarios.show import play, verdict_of_replay  # noqa: PLC0415
 
     with _errors():
-        run = read_run(directory)
-        play(timeline(run), speed)
-        found = differences(run)
-        verdict_of_replay(run, found)
+        runs = read_fleet(directory)
+        for run in runs:
+            play(timeline(run), speed)
+        found = [text for run in runs for text in differences(run)]
+        verdict_of_replay(runs, found)
     raise typer.Exit(UNSAFE if found else OK)
+
+
+@app.command()
+def stress(
+    *,
+    kind: Annotated[
+        str, typer.Option(help="static or mixed (random fields), moving or noise (encounters with traffic).")
+    ] = "static",
+    obstacles: Annotated[
+        str | None,
+        typer.Option(metavar="N,N,…", help="Obstacles per field, or intruders per encounter; one row each."),
+    ] = None,
+    runs: Annotated[int, typer.Option(min=1, max=100_000, help="Worlds per row.")] = 25,
+    seed: Annotated[int, typer.Option(min=0, help="Run i of a seed is the same world for ever.")] = 0,
+    vehicle: Annotated[str, typer.Option(help="kinematic or 6dof.")] = "kinematic",
+    preset: Annotated[str, typer.Option(help="Avoidance: default or paper.")] = "default",
+    jobs: Annotated[int | None, typer.Option(min=1, help="Processes; as many as cores if not given.")] = None,
+    dask: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Scheduler of a Dask cluster that does the work.")
+    ] = None,
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="DIR", help="Failing worlds are written there.")
+    ] = Path("sidestep-stress"),
+    as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON and nothing else.")] = False,
+) -> None:
+    """Fly through many random worlds and count what happens.
+
+    Exit codes: 0 every feasible world was flown safely; 1 some were not, and lie in DIR as scenarios that
+    `sidestep fly` flies again; 2 bad input; 3 the aircraft model failed; 130 interrupted.
+    """
+    from scenarios.stress import rows, run, write_case  # noqa: PLC0415
+    from scenarios.stress_options import campaign_of  # noqa: PLC0415
+    from scenarios.stress_show import failures, progress, table  # noqa: PLC0415
+
+    with _errors():
+        campaign = campaign_of(kind, obstacles, runs, seed, vehicle, preset, jobs, dask)
+        outcomes, files = [], []
+        for outcome in progress(run(campaign, jobs=jobs, dask=dask), campaign):
+            outcomes.append(outcome)
+            if outcome.failing:
+                files.append((outcome, write_case(outcome, campaign, output)))
+        found = rows(outcomes)
+        if as_json:
+            sys.stdout.write(json.dumps([row.as_json() for row in found], indent=2) + "\n")
+        else:
+            table(found, campaign)
+            failures(files)
+    raise typer.Exit(UNSAFE if files else OK)
 
 
 def _fly_and_write(

@@ -13,8 +13,8 @@ from offboard.frames import MapFrame
 from offboard.mission import MissionItem, MissionPlan
 from offboard.simulated import SimulatedVehicle
 from scenarios.errors import ScenarioError
+from scenarios.movers import FlownMover, Mover, PointMover
 from scenarios.scenario import Fidelity, Point, Scenario, Traffic
-from scenarios.world import FlownMover, Mover, PointMover
 
 if TYPE_CHECKING:
     from fmu.library import FmuLibrary
@@ -38,6 +38,8 @@ class Hangar:
         Gives home, wind and vehicle.
     parameters : Parameters
         Gives guidance law and acceptance radius.
+    library : FmuLibrary, optional
+        One that is loaded already and stays loaded; else one is loaded, and freed at the end.
 
     Raises
     ------
@@ -45,14 +47,15 @@ class Hangar:
         If the FMU is missing or does not load.
     """
 
-    def __init__(self, scenario: Scenario, parameters: Parameters) -> None:
+    def __init__(self, scenario: Scenario, parameters: Parameters, library: FmuLibrary | None = None) -> None:
         from fmu.library import FmuLibrary  # noqa: PLC0415
 
         home = scenario.home
         self.frame = MapFrame(home.latitude_deg, home.longitude_deg, home.altitude_m)
         self._scenario = scenario
         self._parameters = parameters
-        self._library: FmuLibrary = FmuLibrary.open()
+        self._shared = library is not None
+        self._library: FmuLibrary = FmuLibrary.open() if library is None else library
         self._plants: list[FmuPlant] = []
 
     def __enter__(self) -> Self:
@@ -64,18 +67,19 @@ class Hangar:
         self.close()
 
     def close(self) -> None:
-        """Free all plants and the library."""
+        """Free all plants, and the library unless it was given."""
         for plant in self._plants:
             plant.close()
         self._plants.clear()
-        self._library.close()
+        if not self._shared:
+            self._library.close()
 
-    def own_vehicle(self) -> SimulatedVehicle:
-        """The vehicle under test, at the start of its mission."""
+    def own_vehicle(self, mission: Sequence[Point]) -> SimulatedVehicle:
+        """A vehicle under test, at the start of its mission."""
         settings = self._scenario.vehicle
         radius = settings.acceptance_radius or self._parameters.acceptance_radius
         return self._vehicle(
-            self._scenario.mission,
+            mission,
             airspeed=settings.airspeed,
             fidelity=settings.fidelity,
             acceptance_radius=radius,

@@ -6,6 +6,7 @@ import difflib
 import math
 import tomllib
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from datetime import UTC
 from pathlib import Path
 from typing import Any
@@ -16,8 +17,10 @@ from offboard.frames import MapFrame
 from scenarios import explain
 from scenarios.check import semantic_problems
 from scenarios.errors import Problem, ScenarioError
+from scenarios.fence import FenceArea
 from scenarios.scenario import (
     Home,
+    Member,
     Obstacle,
     Point,
     RadarSettings,
@@ -27,13 +30,13 @@ from scenarios.scenario import (
     VehicleSettings,
     Wind,
 )
-from scenarios.schema import PositionTable, ScenarioTable
+from scenarios.schema import FenceTable, MemberTable, PlaceTable, PositionTable, ScenarioTable
 
 CATALOGUE = Path(__file__).parent / "catalogue"
 DEFAULT_SCENARIO = "table4"
 DEFAULT_ALTITUDE = 200.0
 """Altitude of a waypoint that gives none [m]."""
-LISTS = ("mission", "obstacles", "traffic")
+LISTS = ("mission", "obstacles", "traffic", "vehicles", "geofence")
 
 
 def catalogue_names() -> list[str]:
@@ -153,7 +156,9 @@ def _build(located: _Located, default_name: str) -> tuple[list[Problem], Scenari
     cruise = max(p.altitude for p in mission)
     obstacles = _positions(frame, table.obstacles, cruise)
     traffic = [_positions(frame, flight.waypoints, cruise) for flight in table.traffic]
-    scenario = _assemble(table, default_name, mission, obstacles, traffic)
+    missions = [_own_mission(frame, member, mission) for member in table.vehicles]
+    scenario = _assemble(table, default_name, mission, obstacles, traffic, missions)
+    scenario = replace(scenario, geofence=tuple(_area(frame, area) for area in table.geofence))
     return semantic_problems(scenario, table, located.key), scenario
 
 
@@ -161,15 +166,36 @@ def _positions(frame: MapFrame, tables: Sequence[PositionTable], altitude: float
     """Map points; `altitude` [m] is for those that give none."""
     points = []
     for table in tables:
-        if table.latitude_deg is not None and table.longitude_deg is not None:
-            north, east = frame.to_map(table.latitude_deg, table.longitude_deg)
-        elif table.north_m is not None and table.east_m is not None:
-            north, east = table.north_m, table.east_m
-        else:
-            raise ValueError("a position table without a position was not validated")
+        north, east = _place(frame, table)
         height = altitude if table.altitude_m is None else table.altitude_m
         points.append(Point(north, east, height, getattr(table, "speed_m_s", None)))
     return points
+
+
+def _area(frame: MapFrame, table: FenceTable) -> FenceArea:
+    """One area of the geofence."""
+    include = table.type == "include"
+    if table.centre is not None and table.radius_m is not None:
+        return FenceArea(include, centre=_place(frame, table.centre), radius=table.radius_m)
+    return FenceArea(include, corners=tuple(_place(frame, corner) for corner in table.polygon or ()))
+
+
+def _place(frame: MapFrame, table: PlaceTable) -> tuple[float, float]:
+    """North and east of home [m]."""
+    if table.latitude_deg is not None and table.longitude_deg is not None:
+        north, east = frame.to_map(table.latitude_deg, table.longitude_deg)
+        return float(north), float(east)
+    if table.north_m is None or table.east_m is None:
+        raise ValueError("a position table without a position was not validated")
+    return table.north_m, table.east_m
+
+
+def _own_mission(frame: MapFrame, member: MemberTable, common: Sequence[Point]) -> list[Point]:
+    """The mission of one of several vehicles: its own, or the common one moved aside."""
+    if member.mission is not None:
+        return _positions(frame, member.mission, DEFAULT_ALTITUDE)
+    north, east = member.north_offset_m, member.east_offset_m
+    return [replace(point, north=point.north + north, east=point.east + east) for point in common]
 
 
 def _assemble(
@@ -178,8 +204,9 @@ def _assemble(
     mission: Sequence[Point],
     obstacles: Sequence[Point],
     traffic: Sequence[Sequence[Point]],
+    missions: Sequence[Sequence[Point]],
 ) -> Scenario:
-    numbered = [o.id for o in table.obstacles] + [t.id for t in table.traffic]
+    numbered = [row.id for rows in (table.obstacles, table.traffic, table.vehicles) for row in rows]
     used = {i for i in numbered if i is not None}
     free = (i for i in range(1, len(numbered) + len(used) + 1) if i not in used)
     ids = [next(free) if i is None else i for i in numbered]
@@ -195,7 +222,7 @@ def _assemble(
         ),
         traffic=tuple(
             Traffic(i, tuple(points), t.speed_m_s, t.starts_at_s, t.motion, t.violation_radius_m)
-            for i, points, t in zip(ids[len(table.obstacles) :], traffic, table.traffic, strict=True)
+            for i, points, t in zip(ids[len(table.obstacles) :], traffic, table.traffic, strict=False)
         ),
         wind=Wind(table.wind.north_m_s, table.wind.east_m_s),
         radar=_radar(table),
@@ -207,8 +234,15 @@ def _assemble(
             table.random.sigma_m,
             table.random.clear_of_start_m,
             table.random.safety_radius_m,
+            table.random.largest_safety_radius_m,
         ),
         time_limit=table.time_limit_s,
+        seed=table.seed,
+        preset=table.preset,
+        vehicles=tuple(
+            Member(i, member.name, tuple(points))
+            for i, points, member in zip(ids[-len(missions) :], missions, table.vehicles, strict=False)
+        ),
     )
 
 
@@ -223,6 +257,7 @@ def _radar(table: ScenarioTable) -> RadarSettings:
         field_of_view=math.radians(radar.field_of_view_deg),
         latency=radar.latency_s,
         false_tracks=radar.false_tracks_per_scan,
+        id_swaps=radar.id_swap_probability,
     )
 
 
@@ -234,4 +269,6 @@ def _vehicle(table: ScenarioTable) -> VehicleSettings:
         airspeed=vehicle.airspeed_m_s,
         acceptance_radius=vehicle.acceptance_radius_m,
         heading=None if vehicle.heading_deg is None else math.radians(vehicle.heading_deg),
+        position_error=vehicle.position_error_m,
+        decision_latency=vehicle.decision_latency_s,
     )

@@ -19,9 +19,10 @@ from avoidance.types import Floats
 from avoidance.yardsticks import length_to_optimum, search_gap
 from offboard.plan_files import PlanFile, write_plan
 from scenarios.errors import RunDirectoryError
-from scenarios.run import Flown, LoggedDecision
-from scenarios.scenario import Obstacle, Scenario
-from scenarios.score import Fate, Score
+from scenarios.fence import geofence_data
+from scenarios.flown import Flown, LoggedDecision
+from scenarios.scenario import OWN, Obstacle, Scenario
+from scenarios.score import Score
 from scenarios.toml_text import to_toml
 from scenarios.track import MovingTrack, Track
 
@@ -127,18 +128,31 @@ def _write_files(directory: Path, flown: Flown, score: Score) -> None:
     texts = {
         "scenario.toml": to_toml(flown.scenario),
         "summary.json": summary_text(score.summary),
-        "track.csv": track_text([flown.track]),
+        "track.csv": track_text([vehicle.track for vehicle in flown.vehicles]),
         "obstacles.csv": obstacles_text(flown.scenario.obstacles),
-        "traffic.csv": traffic_text(flown.track.times, flown.traffic),
-        "waypoints.csv": waypoints_text(score.fates),
-        "decisions.jsonl": "".join(json_line(decision_row(entry)) for entry in flown.decisions),
+        "traffic.csv": traffic_text(_longest(flown), flown.traffic),
+        "waypoints.csv": waypoints_text(score),
+        "decisions.jsonl": "".join(json_line(row) for row in decision_rows(flown)),
         "run.json": json.dumps(run_facts(flown), indent=2, allow_nan=False) + "\n",
     }
     for name, text in texts.items():
         (directory / name).write_text(text, encoding="utf-8", newline="\n")
     cruise = flown.scenario.vehicle.airspeed
-    plan = PlanFile(flown.plan, home.latitude_deg, home.longitude_deg, home.altitude_m, cruise)
-    write_plan(directory / "mission.plan", plan)
+    for number, vehicle in enumerate(flown.vehicles):
+        place = (home.latitude_deg, home.longitude_deg, home.altitude_m)
+        fence = geofence_data(flown.scenario.geofence, flown.frame)
+        plan = PlanFile(vehicle.plan, *place, cruise, fence)
+        write_plan(directory / plan_name(vehicle.name, number), plan)
+
+
+def plan_name(vehicle: str, number: int) -> str:
+    """File of the mission that an own vehicle has finally flown; `number` counts from 0."""
+    return "mission.plan" if number == 0 else f"mission-{vehicle}.plan"
+
+
+def _longest(flown: Flown) -> Floats:
+    """Times of the longest track."""
+    return max((vehicle.track.times for vehicle in flown.vehicles), key=len)
 
 
 def summary_text(summary: dict[str, Any]) -> str:
@@ -183,15 +197,16 @@ def traffic_text(times: Floats, traffic: Iterable[MovingTrack]) -> str:
     return text
 
 
-def waypoints_text(fates: Iterable[Fate]) -> str:
+def waypoints_text(score: Score) -> str:
     """`waypoints.csv`: what became of each waypoint of the mission; empty where there is no value."""
-    text = "waypoint,north_m,east_m,goal_north_m,goal_east_m,shift_m,passed_at_s,missed_by_m\n"
-    for fate in fates:
-        goal = fate.goal
-        point = goal.point or (None, None)
-        values = (goal.north, goal.east, *point, goal.shift, fate.passed_at, fate.missed_by)
-        shown = ("" if value is None else f"{value:.3f}" for value in values)
-        text += ",".join((str(goal.waypoint), *shown)) + "\n"
+    text = "vehicle,waypoint,north_m,east_m,goal_north_m,goal_east_m,shift_m,passed_at_s,missed_by_m\n"
+    for vehicle in score.vehicles:
+        for fate in vehicle.fates:
+            goal = fate.goal
+            point = goal.point or (None, None)
+            values = (goal.north, goal.east, *point, goal.shift, fate.passed_at, fate.missed_by)
+            shown = ("" if value is None else f"{value:.3f}" for value in values)
+            text += ",".join((vehicle.name, str(goal.waypoint), *shown)) + "\n"
     return text
 
 
@@ -217,13 +232,19 @@ def run_facts(flown: Flown) -> dict[str, Any]:
     }
 
 
-def decision_row(entry: LoggedDecision) -> dict[str, Any]:
+def decision_rows(flown: Flown) -> list[dict[str, Any]]:
+    """All lines of `decisions.jsonl`, in order of time."""
+    rows = [decision_row(entry, one.name) for one in flown.vehicles for entry in one.decisions]
+    return sorted(rows, key=lambda row: row["t_s"])
+
+
+def decision_row(entry: LoggedDecision, vehicle: str = OWN) -> dict[str, Any]:
     """One line of `decisions.jsonl` as a dict; keys and units in docs/run-directory.md."""
     decision, state, search = entry.decision, entry.state, entry.decision.search
     new = _new_waypoints(entry)
     return {
         "t_s": round(state.time, 3),
-        "vehicle": "own",
+        "vehicle": vehicle,
         "north_m": round(state.north, 3),
         "east_m": round(state.east, 3),
         "altitude_m": round(state.altitude, 3),

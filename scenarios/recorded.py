@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +16,11 @@ from offboard.errors import PlanFileError
 from offboard.frames import MapFrame
 from offboard.plan_files import read_plan
 from scenarios.errors import RunDirectoryError, ScenarioError
+from scenarios.fence import breaches
 from scenarios.load import load
 from scenarios.metrics import path_length, separations
-from scenarios.scenario import Obstacle, Scenario
+from scenarios.record import plan_name
+from scenarios.scenario import TRAFFIC_VIOLATION_RADIUS, Obstacle, Scenario
 from scenarios.score import approach_summary, decision_times, plan_length
 from scenarios.track import MovingTrack, Track
 
@@ -30,19 +33,45 @@ class Recorded:
     """The files of one run."""
 
     directory: Path
+    vehicle: str
+    """Whose view it is."""
+    fleet: tuple[str, ...]
+    """Names of all own vehicles."""
     scenario: Scenario
+    """With the mission of this vehicle."""
     summary: dict[str, Any]
+    """The figures of this vehicle, and what belongs to the whole flight."""
     track: Track
     obstacles: tuple[Obstacle, ...]
     traffic: tuple[MovingTrack, ...]
+    """Everything that moved beside it, other own vehicles included."""
     decisions: tuple[dict[str, Any], ...]
     waypoints: tuple[dict[str, str], ...]
+    plan_file: Path
+    """Its mission as finally flown."""
     plan_length: float
-    """Of `mission.plan` [m]."""
+    """Of that file [m]."""
+
+    def name_of(self, moving: int) -> str:
+        """A word for something that moves."""
+        names = {member.id: f"vehicle {member.name}" for member in self.scenario.vehicles}
+        return names.get(moving, "traffic")
 
 
-def read_run(directory: Path) -> Recorded:
-    """Read a run directory.
+def read_fleet(directory: Path) -> list[Recorded]:
+    """Read a run directory once for each own vehicle.
+
+    Raises
+    ------
+    RunDirectoryError
+        If a file is missing or cannot be understood; says which.
+    """
+    first = read_run(directory)
+    return [first, *(read_run(directory, name) for name in first.fleet[1:])]
+
+
+def read_run(directory: Path, vehicle: str | None = None) -> Recorded:
+    """Read a run directory as seen by one own vehicle, the first unless another is named.
 
     Raises
     ------
@@ -53,19 +82,28 @@ def read_run(directory: Path) -> Recorded:
         raise RunDirectoryError(directory, "no such directory")
     try:
         scenario = load(directory / "scenario.toml")
-        track = _track(directory / "track.csv")
+        tracks = _tracks(directory / "track.csv")
+        names = [member.name for member in scenario.fleet]
+        number = names.index(vehicle) if vehicle is not None else 0
+        name = names[number]
+        track = tracks[name]
         home = scenario.home
         frame = MapFrame(home.latitude_deg, home.longitude_deg, home.altitude_m)
+        plan_file = directory / plan_name(name, number)
+        others = [_beside(tracks[m.name], track, m.id) for m in scenario.vehicles if m.name != name]
         return Recorded(
             directory=directory,
-            scenario=scenario,
-            summary=json.loads((directory / "summary.json").read_text(encoding="utf-8")),
+            vehicle=name,
+            fleet=tuple(names),
+            scenario=replace(scenario, mission=scenario.fleet[number].mission),
+            summary=_summary(directory / "summary.json", name),
             track=track,
             obstacles=_obstacles(directory / "obstacles.csv"),
-            traffic=_traffic(directory / "traffic.csv", scenario, track),
-            decisions=_decisions(directory / "decisions.jsonl"),
-            waypoints=tuple(_rows(directory / "waypoints.csv")),
-            plan_length=plan_length(read_plan(directory / "mission.plan").plan, frame),
+            traffic=(*_traffic(directory / "traffic.csv", scenario, track), *others),
+            decisions=tuple(d for d in _decisions(directory / "decisions.jsonl") if _is_of(d, name)),
+            waypoints=tuple(w for w in _rows(directory / "waypoints.csv") if _is_of(w, name)),
+            plan_file=plan_file,
+            plan_length=plan_length(read_plan(plan_file).plan, frame),
         )
     except (OSError, ScenarioError, PlanFileError) as error:
         raise RunDirectoryError(directory, f"holds no run that can be read: {error}") from error
@@ -75,7 +113,13 @@ def read_run(directory: Path) -> Recorded:
 
 def recomputed(run: Recorded) -> dict[str, Any]:
     """Those figures of the summary that the files determine."""
+    outside = breaches(run.track, run.scenario.geofence)
+    fence = {
+        "fence_breaches": len(outside),
+        "outside_fence_s": round(sum(end - begin for begin, end in outside), 3),
+    }
     return {
+        **(fence if run.scenario.geofence else {}),
         **approach_summary(separations(run.track, run.obstacles, run.traffic)),
         "path_length_m": round(path_length(run.track.positions), 3),
         "plan_length_m": round(run.plan_length, 3),
@@ -91,7 +135,7 @@ def differences(run: Recorded) -> list[str]:
         stated = run.summary.get(key)
         if not _same(value, stated):
             found.append(f"{key}: summary.json says {stated}, the files give {value}")
-    return found
+    return found if len(run.fleet) == 1 else [f"vehicle {run.vehicle}, {text}" for text in found]
 
 
 def _same(a: object, b: object) -> bool:
@@ -107,12 +151,32 @@ def _rows(file: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(stream))
 
 
-def _track(file: Path) -> Track:
-    with file.open(encoding="utf-8") as stream:
-        columns = stream.readline().strip().split(",")
-        vehicle = stream.readline().split(",", 1)[0]
-    table = np.loadtxt(file, delimiter=",", skiprows=1, usecols=range(1, len(columns)), ndmin=2)
-    return Track(vehicle, table[:, 0], table[:, 1:4], table[:, 4], table[:, 5], table[:, 6])
+def _is_of(row: Mapping[str, Any], vehicle: str) -> bool:
+    """True for a row about a vehicle; files written before there were fleets do not name it."""
+    return not isinstance(row, Mapping) or bool(row.get("vehicle", vehicle) == vehicle)
+
+
+def _summary(file: Path, vehicle: str) -> dict[str, Any]:
+    whole: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
+    return {**whole, **whole.get("vehicles", {}).get(vehicle, {})}
+
+
+def _tracks(file: Path) -> dict[str, Track]:
+    """The tracks of all own vehicles by name; each vehicle's lines are in one piece."""
+    lines = file.read_text(encoding="utf-8").splitlines()[1:]
+    found = {}
+    for vehicle, mine in groupby(lines, key=lambda line: line.split(",", 1)[0]):
+        table = np.loadtxt([line.split(",", 1)[1] for line in mine], delimiter=",", ndmin=2)
+        found[vehicle] = Track(vehicle, table[:, 0], table[:, 1:4], table[:, 4], table[:, 5], table[:, 6])
+    return found
+
+
+def _beside(other: Track, own: Track, identity: int) -> MovingTrack:
+    """Another own vehicle as something that moves, at the times of the own track."""
+    positions = np.full((len(own.times), 3), np.nan)
+    known = other.positions[: len(own.times)]
+    positions[: len(known)] = known
+    return MovingTrack(identity, TRAFFIC_VIOLATION_RADIUS, positions)
 
 
 def _obstacles(file: Path) -> tuple[Obstacle, ...]:
@@ -137,7 +201,7 @@ def _traffic(file: Path, scenario: Scenario, track: Track) -> tuple[MovingTrack,
     table = np.array([line.split(",") for line in lines], dtype=np.float64).reshape(-1, 5)
     found = []
     for plan in scenario.traffic:
-        mine = table[table[:, 1] == plan.id]
+        mine = table[(table[:, 1] == plan.id) & (table[:, 0] <= track.times[-1])]
         positions = np.full((len(track.times), 3), np.nan)
         positions[np.searchsorted(track.times, mine[:, 0])] = mine[:, 2:]
         found.append(MovingTrack(plan.id, plan.radius, positions))

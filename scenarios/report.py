@@ -11,7 +11,8 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from scenarios.report_data import Run, read
+from scenarios.recorded import read_fleet
+from scenarios.report_data import Run, shown
 from scenarios.report_figures import Figure, flight_over_time, separation_over_time
 from scenarios.report_geometry import Encounter, Pass, encounters, nearest, passes
 from scenarios.report_maps import encounter_view, map_key, stretch, top_view
@@ -19,18 +20,19 @@ from scenarios.report_text import (
     decision_table,
     doubts,
     encounter_title,
+    fleet_table,
     key_figures,
     origin,
+    page_name,
     verdict,
 )
 
-REPORT = "report.html"
 MOST_PANELS = 12
 """More encounters than this are not drawn; the closest ones are."""
 
 
 def write_report(directory: Path) -> Path:
-    """Write `report.html` into a run directory.
+    """Write `report.html` into a run directory; of several own vehicles the others get pages beside it.
 
     Parameters
     ----------
@@ -41,22 +43,27 @@ def write_report(directory: Path) -> Path:
     Returns
     -------
     Path
-        The file, which is complete or was not touched.
+        The first vehicle's page; each file is complete or was not touched.
 
     Raises
     ------
     RunDirectoryError
         If a file is missing or cannot be understood; names it.
     """
-    path = Path(directory) / REPORT
-    page = render(read(Path(directory)))
+    runs = [shown(recorded) for recorded in read_fleet(Path(directory))]
+    paths = [Path(directory) / page_name(run.vehicle, number) for number, run in enumerate(runs)]
+    for path, run in zip(paths, runs, strict=True):
+        _write_page(path, render(run))
+    return paths[0]
+
+
+def _write_page(path: Path, page: str) -> None:
     unfinished = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         unfinished.write_text(page, encoding="utf-8")
         os.replace(unfinished, path)
     finally:
         unfinished.unlink(missing_ok=True)
-    return path
 
 
 def render(run: Run) -> str:
@@ -82,6 +89,7 @@ def render(run: Run) -> str:
             "sentence": escape(sentence),
             "origin": escape(origin(run)),
             "doubts": doubts(run),
+            "fleet": fleet_table(run),
             "figures": key_figures(run),
             "scale": _scale(run),
             "key": map_key(run),

@@ -90,6 +90,10 @@ class Run:
     decisions: tuple[Mark, ...]
     disagreements: tuple[str, ...]
     """Where the summary and the other files disagree, in words."""
+    vehicle: str
+    """Whose flight is shown."""
+    fleet: tuple[str, ...]
+    """Names of all own vehicles."""
 
     @property
     def mission(self) -> Floats:
@@ -98,14 +102,18 @@ class Run:
 
 
 def read(directory: Path) -> Run:
-    """Read a run directory.
+    """Read a run directory as seen by its first vehicle.
 
     Raises
     ------
     RunDirectoryError
         If a file is missing or cannot be understood; names it.
     """
-    recorded = read_run(directory)
+    return shown(read_run(directory))
+
+
+def shown(recorded: Recorded) -> Run:
+    """What the report shows of one vehicle's flight."""
     return Run(
         summary=recorded.summary,
         scenario=recorded.scenario,
@@ -113,6 +121,8 @@ def read(directory: Path) -> Run:
         hazards=_hazards(recorded),
         decisions=_decisions(recorded, _final_mission(recorded)),
         disagreements=tuple(differences(recorded)),
+        vehicle=recorded.vehicle,
+        fleet=recorded.fleet,
     )
 
 
@@ -143,7 +153,15 @@ def _hazards(recorded: Recorded) -> tuple[Hazard, ...]:
         for o in recorded.obstacles
     ]
     moving = [
-        Hazard(t.id, "traffic", t.radius, -math.inf, t.positions, by_id.get((t.id, True)), moving=True)
+        Hazard(
+            t.id,
+            recorded.name_of(t.id),
+            t.radius,
+            -math.inf,
+            t.positions,
+            by_id.get((t.id, True)),
+            moving=True,
+        )
         for t in recorded.traffic
     ]
     return (*still, *moving)
@@ -152,7 +170,7 @@ def _hazards(recorded: Recorded) -> tuple[Hazard, ...]:
 def _final_mission(recorded: Recorded) -> Floats:
     home = recorded.scenario.home
     frame = MapFrame(home.latitude_deg, home.longitude_deg, home.altitude_m)
-    items = read_plan(recorded.directory / "mission.plan").plan.mission_items
+    items = read_plan(recorded.plan_file).plan.mission_items
     return np.array([frame.to_map(item.latitude_deg, item.longitude_deg) for item in items]).reshape(-1, 2)
 
 

@@ -13,6 +13,7 @@ from avoidance.types import Floats
 from scenarios.report_data import Hazard, Mark, Run
 from scenarios.report_figures import (
     DECISION,
+    FENCE,
     FLOWN,
     FONT,
     MISSION,
@@ -37,6 +38,7 @@ def top_view(run: Run) -> Figure:
     traces = [
         *_spheres(_placed(run)),
         *_traffic(run, None),
+        *_fence(run),
         *_mission(run),
         *_flown(run, None, 5.0),
         _waypoints(run.decisions),
@@ -88,7 +90,10 @@ def map_key(run: Run) -> str:
             "A waypoint put in by avoidance, or standing for one of the mission’s; hollow once given up.",
         ),
     ]
-    if run.scenario.traffic:
+    if run.scenario.geofence:
+        text = "The geofence: stay inside (solid), stay out (dashed)."
+        signs.append((line(FENCE, 2.5), text))
+    if any(hazard.moving for hazard in run.hazards):
         text = "The path of traffic; its sphere is drawn where it was at the closest pass."
         signs.append((line(TRAFFIC, 2, "2 3"), text))
     return "\n".join(
@@ -116,6 +121,7 @@ def encounter_view(run: Run, encounter: Encounter) -> Figure:
     traces = [
         *_spheres(spheres),
         *_traffic(run, (low, high)),
+        *_fence(run),
         *_mission(run),
         *_flown(run, (low, high), 0.5),
         *(_dimension(p) for p in encounter.passes),
@@ -132,6 +138,17 @@ def _mission(run: Run) -> list[Trace]:
     look = {"symbol": "circle-open", "size": 9, "color": MISSION, "line": {"width": 2}}
     marks = _map_marks("Mission waypoints", points, "mission-waypoints", look, labels)
     return [line, marks | {"mode": "markers+text", "text": labels, "textposition": "middle right"}]
+
+
+def _fence(run: Run) -> list[Trace]:
+    """The edges of the geofence: solid round what is allowed, dashed round what is not."""
+    found = []
+    for include, dash in ((True, "solid"), (False, "dash")):
+        parts = [area.outline() for area in run.scenario.geofence if area.include is include]
+        if parts:
+            name = "Geofence, stay inside" if include else "Geofence, stay out"
+            found.append(_map_line(name, parts, "geofence", color=FENCE, width=2.5, dash=dash))
+    return found
 
 
 def _traffic(run: Run, window: tuple[Floats, Floats] | None) -> list[Trace]:

@@ -24,6 +24,8 @@ def verdict(run: Run) -> tuple[str, str, str]:
         times = "once" if violations == 1 else f"{violations} times"
         headline = f"A safety sphere was entered {times}"
         tone = "entered"
+    elif summary.get("fence_breaches"):
+        headline, tone = "The geofence was left", "entered"
     else:
         headline, tone = ("Flown safely", "safe") if completed else ("Mission not completed", "unfinished")
     flown = (
@@ -66,6 +68,37 @@ def doubts(run: Run) -> str:
         return ""
     items = "".join(f"<li>{escape(text)}</li>" for text in run.disagreements)
     return f'<div class="doubts" id="doubts"><p>The files of this run disagree:</p><ul>{items}</ul></div>'
+
+
+def page_name(vehicle: str, number: int) -> str:
+    """File of the page of one own vehicle; `number` counts from 0."""
+    return "report.html" if number == 0 else f"report-{vehicle}.html"
+
+
+def fleet_table(run: Run) -> str:
+    """Where there are several own vehicles: what became of each, with a way to its page; else nothing."""
+    if len(run.fleet) == 1:
+        return ""
+    rows = []
+    for number, name in enumerate(run.fleet):
+        s = run.summary.get("vehicles", {}).get(name, {})
+        here = name == run.vehicle
+        label = f"<strong>{escape(name)}</strong> (this page)" if here else escape(name)
+        link = label if here else f'<a href="{escape(page_name(name, number))}">{label}</a>'
+        cells = (
+            "completed" if s.get("completed") else "not completed",
+            _value(s.get("violations")),
+            metres(s.get("min_separation_m")),
+            length(s.get("path_length_m")),
+            _value(s.get("replans")),
+        )
+        rows.append(f"<tr><td>{link}</td>" + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>")
+    head = ("Vehicle", "Mission", "Entries", "Closest pass", "Path flown", "Changes of route")
+    titles = "".join(f"<th>{title}</th>" for title in head)
+    return (
+        f'<section id="fleet"><h2>{len(run.fleet)} vehicles</h2><table><thead><tr>{titles}</tr></thead>'
+        f"<tbody>{''.join(rows)}</tbody></table></section>"
+    )
 
 
 def key_figures(run: Run) -> str:

@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
-from avoidance import Decision, Keep, Ownship, Performance, RadarScan, Route
 from avoidance.parameters import PRESETS, Parameters
 from offboard.frames import MapFrame
-from offboard.link import Radar, Vehicle, VehicleState
-from offboard.mission import MissionPlan
+from offboard.link import Vehicle
 from offboard.pilot import Agent, Frame, Pilot, fly
 from scenarios.errors import ScenarioError
+from scenarios.flown import Flown, FlownVehicle, LoggedDecision, WallTime
+from scenarios.movers import Flyer, Mover
+from scenarios.pilots import Desk, FaultyPilot, Navigation
 from scenarios.radar import SimulatedRadar
-from scenarios.scenario import Scenario, scatter, streams
-from scenarios.track import MovingTrack, Track
-from scenarios.world import Flyer, Mover, World
-
-OWN = "own"
-"""Name of the vehicle under test."""
+from scenarios.scenario import Member, Point, RadarSettings, Scenario, scatter, streams
+from scenarios.track import Track
+from scenarios.watched import Blind, FlyOn, TimedClock, TimedRadar, WatchedAgent
+from scenarios.world import World
 
 
 class OwnVehicle(Vehicle, Flyer, Protocol):
@@ -34,69 +33,11 @@ class Maker(Protocol):
     def frame(self) -> MapFrame:
         """The map."""
 
-    def own_vehicle(self) -> OwnVehicle:
-        """The vehicle under test, its mission started."""
+    def own_vehicle(self, mission: Sequence[Point]) -> OwnVehicle:
+        """A vehicle under test, its mission started."""
 
     def traffic(self) -> list[Mover]:
         """Everything that moves."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class LoggedDecision:
-    """A decision that had a threat or changed the route."""
-
-    state: Ownship
-    """The vehicle at the scan."""
-    route: Route
-    """What it was flying."""
-    decision: Decision
-    """What was decided."""
-    milliseconds: float
-    """Wall time of the decision, measured by the caller [ms]."""
-
-
-@dataclass(frozen=True, slots=True)
-class WallTime:
-    """Where the wall time of a flight went [s]."""
-
-    total: float = 0.0
-    """From the first scan to the last step."""
-    avoidance: float = 0.0
-    """Decisions."""
-    radar: float = 0.0
-    """Scans."""
-    world: float = 0.0
-    """The plants, sequencing, traffic and recording."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Flown:
-    """What a flight was: enough to score it and to write it down."""
-
-    scenario: Scenario
-    """As flown: random obstacles drawn, command-line changes made."""
-    seed: int
-    """All randomness came from it."""
-    parameters: Parameters
-    """Of the avoidance core."""
-    performance: Performance
-    """Of the vehicle."""
-    avoidance: bool
-    """False if it was flown without."""
-    frame: MapFrame
-    """The map."""
-    track: Track
-    """Of the own vehicle."""
-    traffic: tuple[MovingTrack, ...]
-    """Of everything that moved."""
-    decisions: tuple[LoggedDecision, ...]
-    """In the order taken."""
-    plan: MissionPlan
-    """The mission as finally flown."""
-    ending: str
-    """"finished", "time limit" or "interrupted"."""
-    wall: WallTime
-    """Where the time went."""
 
 
 class Flight:
@@ -139,29 +80,27 @@ class Flight:
         self._parameters = parameters
         self._avoidance = avoidance
         self._frame = hangar.frame
-        generators = streams(seed)
-        self.vehicle = hangar.own_vehicle()
-        self.world = World(scenario.obstacles, {OWN: self.vehicle}, hangar.traffic())
-        self._radar = _TimedRadar(SimulatedRadar(self.world, scenario.radar, generators["radar"]))
-        if avoidance:
-            from avoidance.agent import Agent as Core  # noqa: PLC0415
-
-            core: Agent = Core(self.vehicle.performance, parameters, generators["planner"])
-        else:
-            core = FlyOn()
-        self._agent = _WatchedAgent(core)
-        self._clock = _TimedClock(self.world)
+        fleet = scenario.fleet
+        vehicles = {member.name: hangar.own_vehicle(member.mission) for member in fleet}
+        self.vehicle = vehicles[fleet[0].name]
+        ids = {member.name: member.id for member in fleet}
+        self.world = World(scenario.obstacles, vehicles, hangar.traffic(), ids)
+        self._stations = [
+            self._station(number, member, vehicles[member.name]) for number, member in enumerate(fleet)
+        ]
+        self._clock = TimedClock(self.world)
         self._total = 0.0
         self._ending = "finished"
 
     @property
     def last_decision(self) -> LoggedDecision | None:
-        """The last decision that had a threat or changed the route."""
-        return self._agent.log[-1] if self._agent.log else None
+        """The last decision that had a threat or changed a route."""
+        last = [station.agent.log[-1] for station in self._stations if station.agent.log]
+        return max(last, key=lambda entry: entry.state.time, default=None)
 
     def __iter__(self) -> Iterator[Frame]:
         """Fly: one frame per radar scan. Leaving the loop early leaves a flight that was interrupted."""
-        pilots = (Pilot(self.vehicle, self._radar, self._agent),)
+        pilots = [station.pilot for station in self._stations]
         limit = self._scenario.limit
         self._ending = "interrupted"
         begun = time.perf_counter()
@@ -176,19 +115,56 @@ class Flight:
 
     def result(self) -> Flown:
         """What has been flown so far."""
+        stations = self._stations
         return Flown(
             scenario=self._scenario,
             seed=self._seed,
             parameters=self._parameters,
-            performance=self.vehicle.performance,
             avoidance=self._avoidance,
             frame=self._frame,
-            track=self.world.tracks()[0],
+            vehicles=tuple(
+                self._vehicle_flown(station, track)
+                for station, track in zip(stations, self.world.tracks(), strict=True)
+            ),
             traffic=tuple(self.world.moving_tracks()),
-            decisions=tuple(self._agent.log),
-            plan=self.vehicle.download_mission(),
             ending=self._ending,
-            wall=WallTime(self._total, self._agent.seconds, self._radar.seconds, self._clock.seconds),
+            wall=WallTime(
+                self._total,
+                sum(station.agent.seconds for station in stations),
+                sum(station.radar.seconds for station in stations),
+                self._clock.seconds,
+            ),
+        )
+
+    def _station(self, number: int, member: Member, vehicle: OwnVehicle) -> _Station:
+        """Everything that belongs to one own vehicle, with its own random numbers."""
+        settings, generators = self._scenario.vehicle, streams(self._seed, number)
+        simulated = SimulatedRadar(self.world, self._scenario.radar, generators["radar"], member.name)
+        radar = TimedRadar(simulated if self._avoidance else Blind())
+        core: Agent = FlyOn()
+        if self._avoidance:
+            from avoidance.agent import Agent as Core  # noqa: PLC0415
+
+            told = informed(self._parameters, self._scenario.radar)
+            core = Core(vehicle.performance, told, generators["planner"])
+        agent = WatchedAgent(core)
+        pilot = Pilot(vehicle, radar, agent)
+        if settings.position_error > 0.0 or settings.decision_latency > 0.0:
+            navigation = Navigation(settings.position_error, generators["navigation"])
+            pilot = FaultyPilot(vehicle, radar, agent, navigation, Desk(settings.decision_latency))
+        return _Station(member, vehicle, radar, agent, pilot)
+
+    def _vehicle_flown(self, station: _Station, track: Track) -> FlownVehicle:
+        name = station.member.name
+        return FlownVehicle(
+            name=name,
+            mission=station.member.mission,
+            performance=station.vehicle.performance,
+            track=track,
+            others=tuple(self.world.others(name)),
+            decisions=tuple(station.agent.log),
+            plan=station.vehicle.download_mission(),
+            ending="finished" if station.vehicle.finished else self._ending,
         )
 
 
@@ -221,57 +197,17 @@ def preset(name: str) -> Parameters:
     return PRESETS[name]
 
 
-class FlyOn:
-    """Stands in for the avoidance core: sees everything, does nothing."""
-
-    def decide(self, own: Ownship, route: Route, scan: RadarScan) -> Decision:  # noqa: ARG002
-        """Fly on."""
-        return _ON
+def informed(parameters: Parameters, radar: RadarSettings) -> Parameters:
+    """Parameters of a core that has read the data sheet of its radar: how accurate it is."""
+    return replace(parameters, range_sigma=radar.range_noise, bearing_sigma=radar.bearing_noise)
 
 
-_ON = Keep(why="avoidance is switched off")
+@dataclass(frozen=True, slots=True)
+class _Station:
+    """What belongs to one own vehicle."""
 
-
-class _WatchedAgent:
-    """Times every decision and keeps those that matter."""
-
-    def __init__(self, agent: Agent) -> None:
-        self._agent = agent
-        self.log: list[LoggedDecision] = []
-        self.seconds = 0.0
-
-    def decide(self, own: Ownship, route: Route, scan: RadarScan) -> Decision:
-        begun = time.perf_counter()
-        decision = self._agent.decide(own, route, scan)
-        seconds = time.perf_counter() - begun
-        self.seconds += seconds
-        if decision.threat is not None or not isinstance(decision, Keep):
-            self.log.append(LoggedDecision(own, route, decision, 1e3 * seconds))
-        return decision
-
-
-class _TimedRadar:
-    def __init__(self, radar: Radar) -> None:
-        self._radar = radar
-        self.seconds = 0.0
-
-    def scan(self, state: VehicleState, now: float) -> RadarScan:
-        begun = time.perf_counter()
-        scan = self._radar.scan(state, now)
-        self.seconds += time.perf_counter() - begun
-        return scan
-
-
-class _TimedClock:
-    def __init__(self, world: World) -> None:
-        self._world = world
-        self.seconds = 0.0
-
-    @property
-    def now(self) -> float:
-        return self._world.now
-
-    def advance(self, period: float) -> None:
-        begun = time.perf_counter()
-        self._world.advance(period)
-        self.seconds += time.perf_counter() - begun
+    member: Member
+    vehicle: OwnVehicle
+    radar: TimedRadar
+    agent: WatchedAgent
+    pilot: Pilot

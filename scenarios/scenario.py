@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
+
+from scenarios.fence import FenceArea
 
 NEAR = 3000.0
 """Within this distance of anything that could be hit, flights are recorded at 10 Hz [m]."""
 TRAFFIC_VIOLATION_RADIUS = 1000.0
 """Coming closer than this to moving traffic is a violation unless the scenario says otherwise [m]."""
+START_ROOM = 500.0
+"""No drawn obstacle's sphere comes nearer to the start than this [m]."""
 LEAST_AIR_MARGIN = 3.0
 """The wind must be slower than the airspeed by at least this [m/s]."""
+
+OWN = "own"
+"""Name of a vehicle that flies alone."""
 
 Fidelity = Literal["6dof", "kinematic"]
 Motion = Literal["6dof", "kinematic", "point"]
@@ -120,6 +128,8 @@ class RadarSettings:
     """Age of a sweep when it is delivered [s]."""
     false_tracks: float = 0.0
     """Mean number of returns per sweep from nothing at all."""
+    id_swaps: float = 0.0
+    """Chance that a sweep exchanges the identities of two obstacles for good."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,6 +145,21 @@ class VehicleSettings:
     """A waypoint counts as reached within this distance [m]; None takes the preset's."""
     heading: float | None = None
     """Direction of the nose at the start [rad]; None points along the first leg."""
+    position_error: float = 0.0
+    """Standard deviation of the horizontal position that the vehicle reports [m]."""
+    decision_latency: float = 0.0
+    """Time that a decision takes which changes the route [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """One of several own vehicles; all are alike."""
+
+    id: int
+    """How the others' radars name it."""
+    name: str
+    mission: tuple[Point, ...]
+    """The first point is where it begins."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +173,14 @@ class RandomField:
     clear_of_start: float = 2000.0
     """A draw this close to the start is drawn again [m]."""
     safety_radius: float = 1000.0
-    """RS of each [m]."""
+    """RS of each [m]; the least of them if they differ."""
+    largest_safety_radius: float | None = None
+    """Radii are uniform up to this [m]; None makes all alike."""
+
+    @property
+    def largest(self) -> float:
+        """Largest RS that can be drawn [m]."""
+        return self.safety_radius if self.largest_safety_radius is None else self.largest_safety_radius
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,11 +202,26 @@ class Scenario:
     """Obstacles still to be drawn; None once they are."""
     time_limit: float | None = None
     """The flight is broken off after this time [s]; None takes twice the nominal time."""
+    seed: int = 0
+    """All randomness of a flight comes from it, unless another one is given."""
+    preset: str = "default"
+    """Parameters of the avoidance core it is flown with, unless others are given."""
+    geofence: tuple[FenceArea, ...] = ()
+    """Where vehicles may be; empty for everywhere."""
+    vehicles: tuple[Member, ...] = ()
+    """Several own vehicles, each with its mission; empty for one that flies `mission`."""
+
+    @property
+    def fleet(self) -> tuple[Member, ...]:
+        """All own vehicles."""
+        return self.vehicles or (Member(-1, OWN, self.mission),)
 
     @property
     def limit(self) -> float:
         """Time after which the flight is broken off [s]."""
-        return 2.0 * nominal_time(self) if self.time_limit is None else self.time_limit
+        if self.time_limit is not None:
+            return self.time_limit
+        return 2.0 * max(nominal_time(self, member.mission) for member in self.fleet)
 
 
 def ground_speed(airspeed: float, wind: Wind, north: float, east: float) -> float:
@@ -196,11 +243,12 @@ def ground_speed(airspeed: float, wind: Wind, north: float, east: float) -> floa
     return speed
 
 
-def nominal_time(scenario: Scenario) -> float:
-    """Time of the mission without obstacles: leg by leg, length over ground speed in the wind [s]."""
+def nominal_time(scenario: Scenario, mission: Sequence[Point] | None = None) -> float:
+    """Time of a mission without obstacles: leg by leg, length over ground speed in the wind [s]."""
+    mission = scenario.mission if mission is None else mission
     total = 0.0
     speed = scenario.vehicle.airspeed
-    for start, end in zip(scenario.mission, scenario.mission[1:], strict=False):
+    for start, end in pairwise(mission):
         north, east = end.north - start.north, end.east - start.east
         speed = speed if start.speed is None else start.speed
         if north or east:
@@ -225,12 +273,16 @@ def scatter(scenario: Scenario, rng: np.random.Generator) -> Scenario:
     if settings is None:
         return scenario
     start = scenario.mission[0]
-    used = {o.id for o in scenario.obstacles} | {t.id for t in scenario.traffic}
+    others = (scenario.obstacles, scenario.traffic, scenario.vehicles)
+    used = {one.id for group in others for one in group}
     free_ids = (i for i in range(1, settings.count + len(used) + 1) if i not in used)
     drawn = []
     for index in range(settings.count):
         waypoint = scenario.mission[index % len(scenario.mission)]
-        clear = max(settings.clear_of_start, settings.safety_radius + 1.0)
+        radius = settings.safety_radius
+        if settings.largest_safety_radius is not None:
+            radius = round(float(rng.uniform(radius, settings.largest_safety_radius)), 3)
+        clear = max(settings.clear_of_start, radius + START_ROOM)
         while True:
             north, east = rng.normal((waypoint.north, waypoint.east), settings.sigma)
             if math.hypot(north - start.north, east - start.east) >= clear:
@@ -241,15 +293,24 @@ def scatter(scenario: Scenario, rng: np.random.Generator) -> Scenario:
                 north=round(float(north), 3),
                 east=round(float(east), 3),
                 altitude=waypoint.altitude,
-                safety_radius=settings.safety_radius,
+                safety_radius=radius,
                 kind="random",
             )
         )
     return replace(scenario, obstacles=scenario.obstacles + tuple(drawn), random=None)
 
 
-def streams(seed: int) -> Mapping[str, np.random.Generator]:
-    """Independent random number generators for "world", "radar" and "planner", all from one seed."""
-    names = ("world", "radar", "planner")
-    children = np.random.SeedSequence(seed).spawn(len(names))
+def streams(seed: int, vehicle: int = 0) -> Mapping[str, np.random.Generator]:
+    """Independent random number generators, all from one seed.
+
+    Parameters
+    ----------
+    seed : int
+        Of the flight.
+    vehicle : int
+        Number of the own vehicle; each has its own generators, "world" is that of number 0.
+    """
+    names = ("world", "radar", "planner", "navigation")
+    key = (len(names) + vehicle,) if vehicle else ()
+    children = np.random.SeedSequence(seed, spawn_key=key).spawn(len(names))
     return {name: np.random.default_rng(child) for name, child in zip(names, children, strict=True)}

@@ -40,14 +40,13 @@ class HomeTable(Table):
     altitude_m: Annotated[float, Field(ge=-500.0, le=6_000.0)] = 600.0
 
 
-class PositionTable(Table):
-    """A point by map metres or by latitude and longitude; altitude above home."""
+class PlaceTable(Table):
+    """A point by map metres or by latitude and longitude."""
 
     north_m: MapCoordinate | None = None
     east_m: MapCoordinate | None = None
     latitude_deg: Latitude | None = None
     longitude_deg: Longitude | None = None
-    altitude_m: Altitude | None = None
 
     @model_validator(mode="after")
     def _one_kind_of_position(self) -> Self:
@@ -58,6 +57,12 @@ class PositionTable(Table):
             message = "needs north_m and east_m, or latitude_deg and longitude_deg (both, and not mixed)"
             raise PydanticCustomError("position", message)
         return self
+
+
+class PositionTable(PlaceTable):
+    """A point with its altitude above home."""
+
+    altitude_m: Altitude | None = None
 
 
 class MissionTable(PositionTable):
@@ -104,6 +109,7 @@ class RadarTable(Table):
     field_of_view_deg: Annotated[float, Field(gt=0.0, le=360.0)] = 360.0
     latency_s: Annotated[float, Field(ge=0.0, le=60.0)] = 0.0
     false_tracks_per_scan: Annotated[float, Field(ge=0.0, le=100.0)] = 0.0
+    id_swap_probability: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
 
 
 class VehicleTable(Table):
@@ -114,6 +120,18 @@ class VehicleTable(Table):
     airspeed_m_s: Airspeed = 15.0
     acceptance_radius_m: Annotated[float, Field(ge=20.0, le=10_000.0)] | None = None
     heading_deg: Annotated[float, Field(ge=-360.0, le=360.0)] | None = None
+    position_error_m: Annotated[float, Field(ge=0.0, le=1_000.0)] = 0.0
+    decision_latency_s: Annotated[float, Field(ge=0.0, le=600.0)] = 0.0
+
+
+class MemberTable(Table):
+    """One of several own vehicles: its own mission, or the common one moved aside."""
+
+    name: Name
+    id: Identity | None = None
+    north_offset_m: MapCoordinate = 0.0
+    east_offset_m: MapCoordinate = 0.0
+    mission: Annotated[list[MissionTable], Field(min_length=2, max_length=10_000)] | None = None
 
 
 class RandomTable(Table):
@@ -123,6 +141,23 @@ class RandomTable(Table):
     sigma_m: Annotated[float, Field(gt=0.0, le=100_000.0)] = 3000.0
     clear_of_start_m: Annotated[float, Field(ge=0.0, le=100_000.0)] = 2000.0
     safety_radius_m: SafetyRadius = 1000.0
+    largest_safety_radius_m: SafetyRadius | None = None
+
+
+class FenceTable(Table):
+    """One area of the geofence: a polygon, or a circle."""
+
+    type: Literal["include", "exclude"]
+    polygon: Annotated[list[PlaceTable], Field(min_length=3, max_length=1_000)] | None = None
+    centre: PlaceTable | None = None
+    radius_m: Annotated[float, Field(gt=0.0, le=1_000_000.0)] | None = None
+
+    @model_validator(mode="after")
+    def _one_shape(self) -> Self:
+        circle = (self.centre, self.radius_m)
+        if (self.polygon is None) == (circle == (None, None)) or (self.polygon is None and None in circle):
+            raise PydanticCustomError("position", "needs polygon, or centre and radius_m (and not both)")
+        return self
 
 
 class ScenarioTable(Table):
@@ -133,6 +168,8 @@ class ScenarioTable(Table):
     description: Annotated[str, Field(max_length=4_000)] = ""
     start_time_utc: AwareDatetime = datetime(2020, 3, 21, 2, 30, tzinfo=UTC)
     time_limit_s: Annotated[float, Field(gt=0.0, le=1_000_000.0)] | None = None
+    seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
+    preset: Literal["default", "paper"] = "default"
     home: HomeTable = HomeTable()
     wind: WindTable = WindTable()
     radar: RadarTable = RadarTable()
@@ -140,3 +177,5 @@ class ScenarioTable(Table):
     random: RandomTable | None = None
     obstacles: Annotated[list[ObstacleTable], Field(max_length=100_000)] = []
     traffic: Annotated[list[TrafficTable], Field(max_length=1_000)] = []
+    vehicles: Annotated[list[MemberTable], Field(max_length=100)] = []
+    geofence: Annotated[list[FenceTable], Field(max_length=100)] = []

@@ -16,9 +16,10 @@ from avoidance.types import Floats
 from offboard.frames import MapFrame
 from offboard.mission import MissionPlan
 from scenarios import __version__
+from scenarios.fence import breaches
+from scenarios.flown import Flown, FlownVehicle, LoggedDecision
 from scenarios.goals import Goal, ReplacementRule, discs, goals
 from scenarios.metrics import Separation, first_pass, nearest_pass, path_length, separations
-from scenarios.run import Flown, LoggedDecision
 from scenarios.scenario import Obstacle, Point
 from scenarios.track import Track
 
@@ -41,54 +42,134 @@ class Fate:
 
 
 @dataclass(frozen=True, slots=True)
+class VehicleScore:
+    """What one own vehicle did, judged."""
+
+    name: str
+    figures: dict[str, Any]
+    """Its part of the summary."""
+    fates: tuple[Fate, ...]
+    """One per waypoint of its mission."""
+    separations: tuple[Separation, ...]
+    """One per obstacle that existed, traffic and other own vehicles included."""
+
+
+@dataclass(frozen=True, slots=True)
 class Score:
     """A flight, judged."""
 
     summary: dict[str, Any]
     """What `summary.json` holds, in its order."""
-    fates: tuple[Fate, ...]
-    """One per waypoint of the mission."""
-    separations: tuple[Separation, ...]
-    """One per obstacle that existed."""
+    vehicles: tuple[VehicleScore, ...]
+    """One per own vehicle."""
 
     @property
     def safe(self) -> bool:
-        """True if the mission was completed and no sphere entered."""
-        return bool(self.summary["completed"]) and self.summary["violations"] == 0
+        """True if all missions were completed, no sphere entered and the geofence kept."""
+        kept = self.summary["violations"] == 0 and not self.summary.get("fence_breaches")
+        return bool(self.summary["completed"]) and kept
+
+    @property
+    def fates(self) -> tuple[Fate, ...]:
+        """Of the first vehicle's waypoints."""
+        return self.vehicles[0].fates
+
+    @property
+    def separations(self) -> tuple[Separation, ...]:
+        """Of all vehicles."""
+        return tuple(one for vehicle in self.vehicles for one in vehicle.separations)
 
 
 def score(flown: Flown) -> Score:
-    """Judge a flight from its track alone, with all obstacles known.
+    """Judge a flight from its tracks alone, with all obstacles known.
 
     Notes
     -----
     Completed: the vehicle reached the end of its mission, and every waypoint, or the point that
     `scenarios.goals` finds for it, was passed in order within the acceptance radius.
     """
-    scenario = flown.scenario
-    rule = replacement_rule(flown.parameters, flown.performance)
-    targets = goals(scenario.mission, scenario.obstacles, rule)
-    fates = waypoint_fates(flown.track, targets, flown.performance.acceptance_radius)
-    approaches = separations(flown.track, scenario.obstacles, flown.traffic)
     wall = flown.wall.total
-    duration = float(flown.track.times[-1])
+    vehicles = tuple(score_vehicle(flown, vehicle) for vehicle in flown.vehicles)
+    figures = vehicles[0].figures
+    if len(vehicles) > 1:
+        figures = fleet_figures([vehicle.figures for vehicle in vehicles])
+        figures["decision_ms"] = _decision_times(flown.decisions)
+    duration = figures["flight_time_s"]
     summary = {
-        "completed": flown.ending == "finished" and all(fate.met for fate in fates),
-        **approach_summary(approaches),
-        "path_length_m": round(path_length(flown.track.positions), 3),
-        "plan_length_m": round(plan_length(flown.plan, flown.frame), 3),
-        "optimum_length_m": optimum_length(scenario.mission, targets, scenario.obstacles),
-        "flight_time_s": duration,
-        "waypoints_replaced": replaced_waypoints(flown.decisions),
-        "replans": sum(changes_route(entry) for entry in flown.decisions),
-        "decision_ms": decision_times([round(entry.milliseconds, 3) for entry in flown.decisions]),
+        **figures,
         "wall_s": round(wall, 3),
         "real_time_factor": round(duration / wall, 1) if wall > 0.0 else None,
         "seed": flown.seed,
         "preset": flown.parameters.name,
         "version": __version__,
     }
-    return Score(summary, tuple(fates), tuple(approaches))
+    if len(vehicles) > 1:
+        summary["vehicles"] = {vehicle.name: vehicle.figures for vehicle in vehicles}
+    return Score(summary, vehicles)
+
+
+def score_vehicle(flown: Flown, vehicle: FlownVehicle) -> VehicleScore:
+    """Judge what one own vehicle did."""
+    obstacles = flown.scenario.obstacles
+    rule = replacement_rule(flown.parameters, vehicle.performance)
+    targets = goals(vehicle.mission, obstacles, rule)
+    fates = waypoint_fates(vehicle.track, targets, vehicle.performance.acceptance_radius)
+    approaches = separations(vehicle.track, obstacles, vehicle.others)
+    names = {member.id for member in flown.scenario.vehicles}
+    figures = {
+        "completed": vehicle.ending == "finished" and all(fate.met for fate in fates),
+        **approach_summary(approaches),
+        "path_length_m": round(path_length(vehicle.track.positions), 3),
+        "plan_length_m": round(plan_length(vehicle.plan, flown.frame), 3),
+        "optimum_length_m": optimum_length(vehicle.mission, targets, obstacles),
+        "flight_time_s": float(vehicle.track.times[-1]),
+        "waypoints_replaced": replaced_waypoints(vehicle.decisions),
+        "replans": sum(changes_route(entry) for entry in vehicle.decisions),
+        "decision_ms": _decision_times(vehicle.decisions),
+    }
+    if flown.scenario.geofence:
+        outside = breaches(vehicle.track, flown.scenario.geofence)
+        figures["fence_breaches"] = len(outside)
+        figures["outside_fence_s"] = round(sum(end - begin for begin, end in outside), 3)
+    if names:
+        figures["violations_of_vehicles"] = sum(s.entries for s in approaches if s.moving and s.id in names)
+    return VehicleScore(vehicle.name, figures, tuple(fates), tuple(approaches))
+
+
+def fleet_figures(vehicles: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """The figures of several own vehicles as one: sums, and the worst.
+
+    An approach of two own vehicles is in the figures of both and counts once.
+    """
+
+    def total(key: str) -> float | None:
+        values = [figures[key] for figures in vehicles]
+        return None if None in values else round(sum(values), 3)
+
+    met = [figures for figures in vehicles if figures["min_separation_m"] is not None]
+    closest = min(met, key=lambda figures: figures["min_separation_m"], default=vehicles[0])
+    fence: dict[str, Any] = {
+        key: round(sum(figures[key] for figures in vehicles), 3)
+        for key in ("fence_breaches", "outside_fence_s")
+        if key in vehicles[0]
+    }
+    twice = sum(figures["violations_of_vehicles"] for figures in vehicles) // 2
+    return {
+        "completed": all(figures["completed"] for figures in vehicles),
+        "violations": sum(figures["violations"] for figures in vehicles) - twice,
+        "min_separation_m": closest["min_separation_m"],
+        "min_margin_m": min((figures["min_margin_m"] for figures in met), default=None),
+        "closest_obstacle": closest["closest_obstacle"],
+        "violation_radius_m": closest["violation_radius_m"],
+        "path_length_m": total("path_length_m"),
+        "plan_length_m": total("plan_length_m"),
+        "optimum_length_m": total("optimum_length_m"),
+        "flight_time_s": max(figures["flight_time_s"] for figures in vehicles),
+        "waypoints_replaced": sum(figures["waypoints_replaced"] for figures in vehicles),
+        "replans": sum(figures["replans"] for figures in vehicles),
+        "decision_ms": None,
+        **fence,
+    }
 
 
 def approach_summary(approaches: Sequence[Separation]) -> dict[str, Any]:
@@ -186,6 +267,10 @@ def replaced_waypoints(decisions: Iterable[LoggedDecision]) -> int:
         replaced |= dict.fromkeys(ahead - kept.keys(), True)
         replaced |= kept
     return sum(replaced.values())
+
+
+def _decision_times(decisions: Iterable[LoggedDecision]) -> dict[str, float | None]:
+    return decision_times([round(entry.milliseconds, 3) for entry in decisions])
 
 
 def decision_times(milliseconds: Sequence[float]) -> dict[str, float | None]:

@@ -19,9 +19,10 @@ from offboard.pilot import Frame
 from scenarios.scenario import Scenario
 
 if TYPE_CHECKING:
+    from scenarios.flown import Flown
     from scenarios.recorded import Recorded
     from scenarios.replay import Event
-    from scenarios.run import Flight, Flown
+    from scenarios.run import Flight
     from scenarios.score import Score
 
 REFRESH = 0.1
@@ -36,7 +37,7 @@ def scenario_table(scenarios: Sequence[Scenario]) -> None:
     table.add_column("legs", justify="right")
     table.add_column("what it is")
     for scenario in scenarios:
-        count = len(scenario.obstacles) + len(scenario.traffic)
+        count = len(scenario.obstacles) + len(scenario.traffic) + len(scenario.vehicles[1:])
         shown = str(count) if scenario.random is None else f"{count + scenario.random.count} drawn"
         table.add_row(scenario.name, shown, str(len(scenario.mission) - 1), scenario.description)
     Console().print(table)
@@ -101,6 +102,8 @@ def results(flown: Flown, score: Score, directory: Path) -> None:
     for row in _rows(flown, score):
         table.add_row(*row)
     console.print(table)
+    if len(score.vehicles) > 1:
+        console.print(_fleet(score))
     wall = f"{summary['wall_s']:.1f} s of wall time, {summary['real_time_factor'] or 0:.0f} times real time"
     print(f"Simulated in {wall}. Everything about the flight: {directory}")
     if (directory / "report.html").is_file():
@@ -125,11 +128,11 @@ def play(events: Iterable[Event], speed: float) -> None:
         )
 
 
-def verdict_of_replay(run: Recorded, differences: Sequence[str]) -> None:
+def verdict_of_replay(runs: Sequence[Recorded], differences: Sequence[str]) -> None:
     """Print whether the figures of a run follow from its files."""
     console = Console()
     if not differences:
-        count = len(run.track.times)
+        count = sum(len(run.track.times) for run in runs)
         console.print(
             f"All figures of summary.json follow from the files ({count} samples).", style="bold green"
         )
@@ -163,13 +166,18 @@ def _verdict(flown: Flown, score: Score) -> str:
     elif flown.ending == "time limit":
         parts.append(f"Not completed: the time limit of {clock(flown.scenario.limit)} was reached.")
     elif not score.summary["completed"]:
-        missed = [str(fate.goal.waypoint + 1) for fate in score.fates if not fate.met]
-        parts.append(
-            f"Not completed: waypoint {', '.join(missed)} was not passed although it could be reached."
-        )
+        for vehicle in score.vehicles:
+            missed = [str(fate.goal.waypoint + 1) for fate in vehicle.fates if not fate.met]
+            of = "" if len(score.vehicles) == 1 else f" of {vehicle.name}"
+            if missed:
+                text = f"waypoint {', '.join(missed)}{of} was not passed although it could be reached"
+                parts.append(f"Not completed: {text}.")
     if violations:
         times = "once" if violations == 1 else f"{violations} times"
         parts.append(f"A safety sphere was entered {times}.")
+    if score.summary.get("fence_breaches"):
+        times = score.summary["fence_breaches"]
+        parts.append(f"The geofence was left {'once' if times == 1 else f'{times} times'}.")
     if not parts:
         return "Flown safely: the mission was completed and no safety sphere entered."
     return " ".join(parts)
@@ -194,7 +202,8 @@ def _rows(flown: Flown, score: Score) -> list[tuple[str, str, str]]:
         rows.append(("closest approach", f"{summary['min_separation_m']:,.1f} m", nearest))
         margin = "outside every sphere" if summary["min_margin_m"] >= 0.0 else "inside a sphere"
         rows.append(("least margin", f"{summary['min_margin_m']:,.1f} m", margin))
-    rows.append(("spheres entered", str(summary["violations"]), f"of {len(score.separations)} obstacles"))
+    of = f"of {len(score.separations)} obstacles" if len(score.vehicles) == 1 else "all vehicles together"
+    rows.append(("spheres entered", str(summary["violations"]), of))
     rows.append(
         ("changes of the route", str(summary["replans"]), "" if flown.avoidance else "avoidance was off")
     )
@@ -205,6 +214,27 @@ def _rows(flown: Flown, score: Score) -> list[tuple[str, str, str]]:
             ("time of a decision", f"{summary['decision_ms']['median']:.1f} ms", f"median; {longest}")
         )
     return rows
+
+
+def _fleet(score: Score) -> Table:
+    """What became of each of several own vehicles."""
+    table = Table(box=None, pad_edge=False)
+    table.add_column("vehicle", style="bold")
+    for title in ("mission", "entries", "closest approach", "path flown", "÷ shortest", "route changes"):
+        table.add_column(title, justify="right")
+    for vehicle in score.vehicles:
+        s = vehicle.figures
+        near, best = s["min_separation_m"], s["optimum_length_m"]
+        table.add_row(
+            vehicle.name,
+            "completed" if s["completed"] else "not completed",
+            str(s["violations"]),
+            "–" if near is None else f"{near:,.1f} m",
+            f"{s['path_length_m']:,.0f} m",
+            "–" if not best else f"{s['path_length_m'] / best:.5f}",
+            str(s["replans"]),
+        )
+    return table
 
 
 def _optimum(summary: dict[str, float]) -> tuple[str, str]:

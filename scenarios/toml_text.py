@@ -6,6 +6,7 @@ import json
 import math
 from collections.abc import Iterable, Mapping
 
+from scenarios.fence import FenceArea
 from scenarios.scenario import Obstacle, Point, Scenario, Traffic
 
 
@@ -21,6 +22,8 @@ def to_toml(scenario: Scenario) -> str:
             description=scenario.description,
             start_time_utc=_Bare(scenario.start_time_utc.isoformat().replace("+00:00", "Z")),
             time_limit_s=scenario.time_limit,
+            seed=scenario.seed,
+            preset=scenario.preset,
         ),
         _table(
             "[home]",
@@ -39,6 +42,7 @@ def to_toml(scenario: Scenario) -> str:
             field_of_view_deg=min(math.degrees(radar.field_of_view), 360.0),
             latency_s=radar.latency,
             false_tracks_per_scan=radar.false_tracks,
+            id_swap_probability=radar.id_swaps,
         ),
         _table(
             "[vehicle]",
@@ -47,6 +51,8 @@ def to_toml(scenario: Scenario) -> str:
             airspeed_m_s=vehicle.airspeed,
             acceptance_radius_m=vehicle.acceptance_radius,
             heading_deg=heading,
+            position_error_m=vehicle.position_error,
+            decision_latency_s=vehicle.decision_latency,
         ),
     ]
     if random is not None:
@@ -57,11 +63,17 @@ def to_toml(scenario: Scenario) -> str:
                 sigma_m=random.sigma,
                 clear_of_start_m=random.clear_of_start,
                 safety_radius_m=random.safety_radius,
+                largest_safety_radius_m=random.largest_safety_radius,
             )
         )
     parts += [_table("[[mission]]", **_point(p)) for p in scenario.mission]
     parts += [_table("[[obstacles]]", **_obstacle(o)) for o in scenario.obstacles]
     parts += [_table("[[traffic]]", **_traffic(t)) for t in scenario.traffic]
+    parts += [_table("[[geofence]]", **_area(area)) for area in scenario.geofence]
+    parts += [
+        _table("[[vehicles]]", id=m.id, name=m.name, mission=[_point(p) for p in m.mission])
+        for m in scenario.vehicles
+    ]
     return "\n".join(parts)
 
 
@@ -89,6 +101,17 @@ def _obstacle(obstacle: Obstacle) -> dict[str, object]:
         "altitude_m": obstacle.altitude,
         "safety_radius_m": obstacle.safety_radius,
         "appears_at_s": obstacle.appears_at,
+    }
+
+
+def _area(area: FenceArea) -> dict[str, object]:
+    corners = [{"north_m": north, "east_m": east} for north, east in area.corners]
+    centre = None if area.centre is None else {"north_m": area.centre[0], "east_m": area.centre[1]}
+    return {
+        "type": "include" if area.include else "exclude",
+        "polygon": corners or None,
+        "centre": centre,
+        "radius_m": area.radius,
     }
 
 

@@ -50,6 +50,9 @@ class TrackLog:
         self.vehicle = vehicle
         self._data = array("d")
 
+    def __len__(self) -> int:
+        return len(self._data) // self.COLUMNS
+
     def append(self, time: float, state: Ownship) -> None:
         """Add the state at `time` [s]."""
         self._data.extend(

@@ -169,7 +169,7 @@ def test_a_pop_up_over_the_start_is_no_mistake():
 
 
 def test_unknown_names_and_missing_files(tmp_path):
-    with pytest.raises(ScenarioError, match=r"did you mean 'table4'\? Known: table4, clear"):
+    with pytest.raises(ScenarioError, match=r"did you mean 'table4'\? Known: table4, circle"):
         load("tabel4")
     with pytest.raises(ScenarioError, match="no such file"):
         load(tmp_path / "none.toml")

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
+from scenarios.movers import PointMover
 from scenarios.radar import FIRST_FALSE_ID, SimulatedRadar
-from scenarios.scenario import Obstacle, RadarSettings
+from scenarios.scenario import Obstacle, Point, RadarSettings, Traffic
 from scenarios.world import World
 from tests.scenarios.flyers import StraightFlyer
 
@@ -93,3 +96,50 @@ def test_what_comes_into_range_is_seen_on_the_first_scan_that_can():
         in_range = np.hypot(np.array([12_000.0, 30_000.0]) - flyer.north, (50.0, 0.0)) <= 10_000.0
         assert radar.scan(flyer.state(), world.now).ids.tolist() == (np.flatnonzero(in_range) + 1).tolist()
         world.advance(1.0)
+
+
+def test_swapped_identities_stay_swapped_and_none_is_lost():
+    radar, flyer, _ = radar_and_state([(5000.0, 0.0), (6000.0, 0.0), (7000.0, 0.0)], id_swaps=0.2)
+    scans = [radar.scan(flyer.state(), 0.0) for _ in range(200)]
+    shown = [tuple(scan.ids.tolist()) for scan in scans]
+    changes = sum(a != b for a, b in pairwise(shown))
+    assert all(sorted(ids) == [1, 2, 3] for ids in shown)
+    assert changes == pytest.approx(40, abs=15)
+    assert all(scan.positions[:, 0].tolist() == [5000.0, 6000.0, 7000.0] for scan in scans)
+
+
+def test_returns_are_placed_from_where_the_vehicle_believes_to_be():
+    radar, flyer, _ = radar_and_state([(5000.0, 0.0), (10_010.0, 0.0)])
+    state = flyer.state()
+    own = replace(state.ownship, north=30.0, east=-20.0, position_error=25.0)
+    scan = radar.scan(replace(state, ownship=own), 0.0)
+    assert scan.ids.tolist() == [1]  # what is in range is decided by the truth
+    assert scan.positions.tolist() == [[5030.0, -20.0, 200.0]]
+
+
+def test_traffic_and_other_vehicles_are_seen_and_the_own_one_is_not():
+    plan = Traffic(9, (Point(0.0, 3000.0, 200.0), Point(9e4, 3000.0, 200.0)), motion="point")
+    flyers = {"a": StraightFlyer(), "b": StraightFlyer(east=2000.0, length=50.0)}
+    world = World([Obstacle(1, 4000.0, 0.0, 200.0, 800.0)], flyers, [PointMover(plan)], {"a": 11, "b": 12})
+    radar = SimulatedRadar(world, RadarSettings(), np.random.default_rng(0), "a")
+    scan = radar.scan(flyers["a"].state(), 0.0)
+    assert scan.ids.tolist() == [1, 9, 12]
+    assert scan.positions[2].tolist() == [0.0, 2000.0, 200.0]
+    assert math.isnan(scan.radii[2])
+    for _ in range(5):
+        world.advance(1.0)
+    assert radar.scan(flyers["a"].state(), 5.0).ids.tolist() == [1, 9]  # b has finished
+
+
+def test_a_hundred_thousand_obstacles_far_away_change_nothing():
+    rng = np.random.default_rng(0)
+    far = rng.uniform(50_000.0, 900_000.0, (100_000, 2)).tolist()
+    crowded, flyer, world = radar_and_state([(9000.0, 100.0), *far])
+    lonely, other, _ = radar_and_state([(9000.0, 100.0)])
+    for _ in range(400):
+        assert (
+            crowded.scan(flyer.state(), world.now).ids.tolist()
+            == lonely.scan(other.state(), world.now).ids.tolist()
+        )
+        world.advance(1.0)
+        other.advance(1.0)

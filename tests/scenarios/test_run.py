@@ -127,3 +127,15 @@ def test_the_same_seed_gives_the_same_bytes_in_two_processes(request):
         for _ in range(2)
     }
     assert len(digests) == 1
+
+
+CATALOGUE_TRAFFIC = ("head-on", "from-left", "from-right", "overtaking", "same-course", "pop-up")
+
+
+@pytest.mark.parametrize("name", CATALOGUE_TRAFFIC)
+def test_what_the_catalogue_puts_in_the_way_is_hit_without_avoidance(name):
+    scenario = load(name)
+    slow = replace(scenario.vehicle, fidelity="kinematic")
+    points = tuple(replace(flight, motion="point") for flight in scenario.traffic)
+    _, judged = flown(replace(scenario, vehicle=slow, traffic=points), avoidance=False)
+    assert judged.summary["violations"] > 0

@@ -58,5 +58,7 @@ def test_random_field_depends_on_the_seed_alone():
 
 def test_streams_are_independent():
     first = {name: rng.random() for name, rng in streams(1).items()}
-    assert len(set(first.values())) == 3
+    assert len(set(first.values())) == 4
+    second = {name: rng.random() for name, rng in streams(1, vehicle=1).items()}
+    assert not set(first.values()) & set(second.values())
     assert first == {name: rng.random() for name, rng in streams(1).items()}

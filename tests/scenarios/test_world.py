@@ -7,8 +7,9 @@ import math
 import numpy as np
 import pytest
 
+from scenarios.movers import FlownMover, PointMover
 from scenarios.scenario import Obstacle, Point, Traffic
-from scenarios.world import FlownMover, PointMover, World
+from scenarios.world import World
 from tests.scenarios.flyers import StraightFlyer
 
 

@@ -1,0 +1,156 @@
+"""Encounters with traffic, drawn so that without avoidance every one comes too near."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from scenarios.scenario import TRAFFIC_VIOLATION_RADIUS, Home, Motion, Point, RadarSettings, Scenario, Traffic
+
+LEG = 20_000.0
+"""Length of the leg that is flown [m]."""
+AIRSPEED = 15.0
+"""Of the own vehicle [m/s]."""
+ALTITUDE = 200.0
+"""Everybody flies here [m]: nothing is solved by height."""
+SLOWEST, FASTEST = 5.0, 60.0
+"""Ground speeds of intruders [m/s]."""
+LARGEST_MISS = 0.95 * TRAFFIC_VIOLATION_RADIUS
+"""Closest approach of two that both fly straight on is at most this [m]."""
+FIRST_SEEN_ONE, FIRST_SEEN_SEVERAL = 8_000.0, 10_000.0
+"""An intruder is first seen no nearer than this, alone or as one of several [m]."""
+AIRCRAFT_SPEEDS = (12.0, 22.0)
+"""Intruders of these speeds can be flown by the aircraft model [m/s]."""
+RUN_OUT = 20_000.0
+"""An intruder flies on for so far after the own vehicle's time limit [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Intruder:
+    """Constant velocity, and when and how near it would pass."""
+
+    north: float
+    """Where it is at the start [m]."""
+    east: float
+    """Where it is at the start [m]."""
+    velocity_north: float
+    """Over ground [m/s]."""
+    velocity_east: float
+    """Over ground [m/s]."""
+    passes_at: float
+    """Time of closest approach if nobody gives way [s]."""
+    miss: float
+    """Distance then [m]."""
+
+    @property
+    def speed(self) -> float:
+        """Over ground [m/s]."""
+        return math.hypot(self.velocity_north, self.velocity_east)
+
+    @property
+    def start_distance(self) -> float:
+        """From the own vehicle at the start [m]."""
+        return math.hypot(self.north, self.east)
+
+
+def draw_intruder(rng: np.random.Generator, first_seen: float) -> Intruder:
+    """One intruder for an own vehicle that flies north from the origin at 15 m/s.
+
+    Parameters
+    ----------
+    rng : Generator
+        The only source of randomness.
+    first_seen : float
+        It is at least this far away at the start [m].
+
+    Notes
+    -----
+    Speed, course and miss distance are uniform, so is the moment of closest approach among those on the leg
+    at which it began far enough away. Only what closes so slowly that no such moment exists is drawn again.
+    """
+    duration = LEG / AIRSPEED
+    while True:
+        speed = rng.uniform(SLOWEST, FASTEST)
+        course = rng.uniform(-math.pi, math.pi)
+        miss = rng.uniform(-LARGEST_MISS, LARGEST_MISS)
+        share = rng.random()
+        north, east = speed * math.cos(course), speed * math.sin(course)
+        closing_north, closing_east = north - AIRSPEED, east
+        closing = math.hypot(closing_north, closing_east)
+        earliest = math.sqrt(first_seen**2 - miss**2) / max(closing, 1e-9)
+        if earliest >= duration:
+            continue
+        when = earliest + share * (duration - earliest)
+        across = (-closing_east / closing * miss, closing_north / closing * miss)
+        return Intruder(
+            north=across[0] - closing_north * when,
+            east=across[1] - closing_east * when,
+            velocity_north=north,
+            velocity_east=east,
+            passes_at=when,
+            miss=abs(miss),
+        )
+
+
+def encounter(
+    rng: np.random.Generator, home: Home, *, intruders: int = 1, aircraft: bool = False
+) -> Scenario:
+    """One leg of 20 km and the intruders that would pass within 1 km of whoever flies straight along it.
+
+    Parameters
+    ----------
+    rng : Generator
+        The only source of randomness.
+    home : Home
+        Origin of the map.
+    intruders : int
+        How many.
+    aircraft : bool
+        True flies those between 12 and 22 m/s on the aircraft model; the others are points.
+
+    Returns
+    -------
+    Scenario
+        With a perfect radar.
+    """
+    first_seen = FIRST_SEEN_ONE if intruders == 1 else FIRST_SEEN_SEVERAL
+    drawn = [draw_intruder(rng, first_seen) for _ in range(intruders)]
+    mission = (Point(0.0, 0.0, ALTITUDE), Point(LEG, 0.0, ALTITUDE))
+    return Scenario(
+        name="encounter",
+        description=describe(drawn),
+        home=home,
+        mission=mission,
+        traffic=tuple(_traffic(k, one, aircraft) for k, one in enumerate(drawn, start=1)),
+        radar=RadarSettings(),
+    )
+
+
+def describe(intruders: Sequence[Intruder]) -> str:
+    """The encounters in words: speed, and from where relative to the own nose."""
+    return "; ".join(_words(one) for one in intruders)
+
+
+def _words(intruder: Intruder) -> str:
+    bearing = math.degrees(math.atan2(intruder.east, intruder.north))
+    side = "right" if bearing >= 0.0 else "left"
+    return (
+        f"{intruder.speed:.1f} m/s from {abs(bearing):.0f} deg {side}, would pass at {intruder.miss:.0f} m "
+        f"after {intruder.passes_at:.0f} s"
+    )
+
+
+def _traffic(identity: int, intruder: Intruder, aircraft: bool) -> Traffic:
+    lasts = 2.0 * LEG / AIRSPEED + RUN_OUT / intruder.speed
+    begin = Point(round(intruder.north, 3), round(intruder.east, 3), ALTITUDE)
+    end = Point(
+        round(intruder.north + lasts * intruder.velocity_north, 3),
+        round(intruder.east + lasts * intruder.velocity_east, 3),
+        ALTITUDE,
+    )
+    low, high = AIRCRAFT_SPEEDS
+    motion: Motion = "6dof" if aircraft and low <= intruder.speed <= high else "point"
+    return Traffic(identity, (begin, end), speed=intruder.speed, motion=motion)
