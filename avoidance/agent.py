@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 
 from avoidance.free_space import nearest_free
-from avoidance.known import Known, known_obstacles, within_reach
-from avoidance.ladder import Plan, way_round
+from avoidance.known import Circles, Known, keep_what_can_be_kept, known_obstacles
+from avoidance.ladder import Plan, way_round, widest_way
 from avoidance.parameters import DEFAULT, Parameters
 from avoidance.problem import WaypointProblem
 from avoidance.route_check import Blocked, first_blocked_leg, first_conflict
@@ -29,9 +29,10 @@ from avoidance.types import (
     Resume,
     Route,
     Rung,
+    Threat,
     Waypoint,
 )
-from avoidance.words import detour_words, replace_words, threat_words
+from avoidance.words import detour_words, obstacles, replace_words, threat_words
 
 CLEAR = Keep(why="the route is clear")
 HOLD_RADII = 1.5
@@ -76,7 +77,10 @@ class Agent:
         self._checked: int | None = None
         self._failures = 0
         self._checked_route: Route | None = None
-        self._avoiding_intruder = False
+        self._avoiding: frozenset[int] = frozenset()
+        self._escaping = False
+        self._version = 0
+        self._reconsidered = 0
         self._holding = False
         self._retry_at = -math.inf
 
@@ -100,7 +104,8 @@ class Agent:
         picture = self._tracker.update(scan, own)
         if not route.waypoints:
             return CLEAR
-        traffic = bool(picture.moving.any()) or self._avoiding_intruder
+        traffic = bool(picture.moving.any())
+        self._version = picture.version
         unchanged = self._checked == picture.version and (self._holding or self._checked_route is route)
         if unchanged and not traffic and own.time < self._retry_at:
             return CLEAR
@@ -113,42 +118,91 @@ class Agent:
 
     def _decide(self, own: Ownship, route: Route, known: Known) -> Decision:
         self._retry_at = math.inf
+        escape = self._escape(own, route, known)
+        if escape is not None:
+            return escape
         replaced = self._replace_waypoint(own, route, known)
         if replaced is not None:
             return replaced
-        reachable = within_reach(known, own, self._performance)
-        blocked = first_blocked_leg(own, route, reachable, self._performance)
+        known = keep_what_can_be_kept(known, own, self._performance)
+        blocked = first_blocked_leg(own, route, known, self._performance)
         if blocked is None:
-            blocked = first_conflict(own, route, reachable)
+            blocked = first_conflict(own, route, known)
         if blocked is not None:
-            return self._avoid(own, route, reachable, blocked)
-        return self._resume(own, route, reachable)
+            return self._avoid(own, route, known, blocked)
+        return self._resume(own, route, known)
+
+    # --- inside a sphere ------------------------------------------------------------------------------
+
+    def _escape(self, own: Ownship, route: Route, known: Known) -> Decision | None:
+        """Leave a sphere that appeared round the vehicle by the shortest way."""
+        circles = known.circles(own.altitude, own.altitude)
+        here = np.array([own.north, own.east])
+        offset = here - circles.centres
+        distance = np.hypot(offset[:, 0], offset[:, 1])
+        depth = circles.keep - known.margin[circles.rows] - distance
+        if not (depth > 0.0).any():
+            self._escaping = False
+            return None
+        if self._escaping:
+            return CLEAR
+        self._escaping = True
+        deepest = int(np.argmax(depth))
+        away = offset[deepest] / max(float(distance[deepest]), 1e-9)
+        if distance[deepest] < 1.0:
+            away = np.array([math.cos(own.course), math.sin(own.course)])
+        reach = float(circles.keep[deepest]) + self._performance.turn_room
+        point = circles.centres[deepest] + reach * away
+        threat = Threat(
+            ids=(int(known.ids[circles.rows[deepest]]),),
+            leg=0,
+            distance=0.0,
+            time=0.0,
+            clearance=float(distance[deepest]),
+            required=float(circles.keep[deepest]),
+        )
+        waypoint = Waypoint(float(point[0]), float(point[1]), own.altitude)
+        own_items = tuple(w for w in route.waypoints if w.item is not None)
+        return Detour(
+            why=f"{obstacles(threat.ids)} appeared round the vehicle; leave by the shortest way",
+            threat=threat,
+            rung=Rung.CLOSE,
+            route=(waypoint, *own_items),
+            waypoint=waypoint,
+        )
 
     # --- mission waypoints that cannot be reached -----------------------------------------------------
 
     def _learn(self, route: Route) -> None:
-        """Remember where the mission's own waypoints are, as uploaded."""
+        """Remember where the mission's own waypoints are, as uploaded last."""
         for waypoint in route.waypoints:
             if waypoint.item is not None and not waypoint.moved:
-                self._mission.setdefault(waypoint.item, waypoint)
+                self._mission[waypoint.item] = waypoint
 
     def _replace_waypoint(self, own: Ownship, route: Route, known: Known) -> Decision | None:
-        """Move the first mission waypoint that is unsafe (Algorithm 4), or put one back."""
-        if not len(known.keep):
+        """Move the first mission waypoint that is unsafe (Algorithm 4), or put back one that is not."""
+        if not len(known.ids) and not any(w.moved for w in route.waypoints):
             return None
-        items = [(i, w) for i, w in enumerate(route.waypoints) if w.item is not None]
         room = self._waypoint_room()
-        points = np.array([(w.north, w.east) for _, w in items])
-        offset = points[:, None] - known.centres[None]
-        distance = np.hypot(offset[..., 0], offset[..., 1])
-        unsafe = distance < (known.keep + room - 1.0)[None]
-        for row in np.flatnonzero(unsafe.any(axis=1)):
-            index, waypoint = items[int(row)]
-            if index == 0 and self._arriving(own, waypoint):
+        circles: dict[float, Circles] = {}
+        for index, waypoint in enumerate(route.waypoints):
+            if waypoint.item is None or (index == 0 and self._arriving(own, waypoint)):
                 continue
-            near = np.flatnonzero(unsafe[row])
-            near = near[np.argsort(distance[row, near])]
-            return self._move(own, route, known, index, tuple(int(i) for i in known.ids[near]))
+            height = waypoint.altitude
+            if height not in circles:
+                circles[height] = known.circles(height, height)
+            near = circles[height]
+            distance = _distances(near.centres, (waypoint.north, waypoint.east))
+            unsafe = np.flatnonzero(distance < near.keep + room - 1.0)
+            unsafe = unsafe[np.argsort(distance[unsafe], kind="stable")]
+            reconsider = waypoint.moved and self._reconsidered != self._version
+            if not len(unsafe) and not reconsider:
+                continue
+            ids = tuple(dict.fromkeys(known.ids[near.rows[unsafe]].tolist()))
+            decision = self._move(own, route, near, index, ids)
+            if decision is not None:
+                return decision
+        self._reconsidered = self._version
         return None
 
     def _waypoint_room(self) -> float:
@@ -161,41 +215,29 @@ class Agent:
         return distance < self._performance.acceptance_radius + 2.0 * own.ground_speed
 
     def _move(
-        self, own: Ownship, route: Route, known: Known, index: int, ids: tuple[int, ...]
+        self, own: Ownship, route: Route, circles: Circles, index: int, ids: tuple[int, ...]
     ) -> Decision | None:
         """Decide on the stand-in for a mission waypoint: the nearest safe point that can be reached."""
         waypoint = route.waypoints[index]
-        original = self._mission.get(waypoint.item if waypoint.item is not None else -1, waypoint)
+        original = self._mission.get(-1 if waypoint.item is None else waypoint.item, waypoint)
         here = (own.north, own.east)
-        passing = np.minimum(known.keep, _distances(known, here) - 1.0)
+        passing = np.maximum(np.minimum(circles.keep, _distances(circles.centres, here) - 1.0), 0.0)
+        place = (original.north, original.east)
         point = None
         for room in self._rooms():
-            point = nearest_free(
-                (original.north, original.east),
-                here,
-                known.centres,
-                known.keep + room,
-                np.maximum(passing, 0.0),
-            )
+            point = nearest_free(place, here, circles.centres, circles.keep + room, passing)
             if point is not None:
                 break
+        if point is None or math.dist(point, (waypoint.north, waypoint.east)) < 1.0:
+            return None
         before = route.waypoints[:index]
         while before and before[-1].item is None:
             before = before[:-1]  # a detour towards the old place has lost its purpose
-        after = route.waypoints[index + 1 :]
-        if point is None:
-            return Replace(
-                why=replace_words(original, None, ids),
-                route=before + after,
-                waypoint=None,
-                rung=Rung.WAYPOINT,
-            )
-        chosen = replace(original, north=point[0], east=point[1], moved=True)
-        if math.hypot(chosen.north - waypoint.north, chosen.east - waypoint.east) < 1.0:
-            return None
+        back = math.dist(point, place) < 1e-6
+        chosen = original if back else replace(original, north=point[0], east=point[1], moved=True)
         return Replace(
             why=replace_words(original, chosen, ids),
-            route=(*before, chosen, *after),
+            route=(*before, chosen, *route.waypoints[index + 1 :]),
             waypoint=chosen,
             rung=Rung.WAYPOINT,
         )
@@ -212,12 +254,13 @@ class Agent:
     def _avoid(self, own: Ownship, route: Route, known: Known, blocked: Blocked) -> Decision:
         problem, begin, end = self._problem(own, route, known, blocked)
         plan = way_round(problem, self._rng)
-        if plan is None and blocked.threat.moving and len(known.intruders.required):
-            plan = way_round(_least_separation(problem, self._parameters.moving_radius), self._rng)
+        if plan is None and len(known.intruders.required):
+            plan = widest_way(problem, self._rng)
         if plan is not None:
             return self._fly_round(route, blocked, plan, begin, end)
         if route.waypoints[end].item is not None and not blocked.threat.moving:
-            walled_in = self._move(own, route, known, end, ())
+            height = route.waypoints[end].altitude
+            walled_in = self._move(own, route, known.circles(height, height), end, ())
             if walled_in is not None:
                 return walled_in
         self._retry_at = own.time + RETRY
@@ -244,25 +287,23 @@ class Agent:
         begin = blocked.leg
         while begin > 0 and waypoints[begin - 1].item is None:
             begin -= 1
-        here = (own.north, own.east)
-        places = [here, *((w.north, w.east) for w in waypoints)]
+        places = [(own.north, own.east), *((w.north, w.east) for w in waypoints)]
+        heights = (waypoints[begin - 1].altitude if begin else own.altitude, waypoints[end].altitude)
+        circles = known.circles(min(heights), max(heights))
         labels = clusters(
-            known.centres, known.keep, self._parameters.link_distance, self._parameters.all_obstacles
+            circles.centres, circles.keep, self._parameters.link_distance, self._parameters.all_obstacles
         )
-        avoided = (
-            np.flatnonzero(labels == labels[blocked.blockers[0]])
-            if len(blocked.blockers)
-            else np.empty(0, dtype=np.int64)
-        )
+        nearest = np.flatnonzero(np.isin(circles.rows, blocked.blockers[:1]))
+        avoided = np.flatnonzero(labels == labels[nearest[0]]) if len(nearest) else nearest
         flown = sum(math.dist(a, b) for a, b in pairwise(places[: begin + 1]))
         problem = WaypointProblem(
             start=places[begin],
             target=places[end + 1],
             course=own.course if begin == 0 else None,
             before=None if begin == 0 else places[begin - 1],
-            centres=known.centres,
-            keep=known.keep,
-            keep_waypoint=known.keep_waypoint,
+            centres=circles.centres,
+            keep=circles.keep,
+            keep_waypoint=circles.keep_waypoint,
             avoided=avoided,
             intruders=known.intruders,
             delay=flown / self._performance.airspeed,
@@ -276,7 +317,7 @@ class Agent:
         new = tuple(Waypoint(north, east, altitude) for north, east in plan.waypoints)
         waypoints = (*route.waypoints[:begin], *new, *route.waypoints[end:])
         why = detour_words(blocked.threat, plan)
-        self._avoiding_intruder = blocked.threat.moving
+        self._avoiding = frozenset(blocked.threat.ids)
         self._holding = False
         self._failures = 0
         if not new:
@@ -317,10 +358,11 @@ class Agent:
         self._holding = True
         radius = HOLD_RADII * self._performance.turn_radius
         centre, direction, most = (own.north, own.east), 1, -math.inf
+        circles = known.circles(own.altitude, own.altitude)
         for side in (1, -1):
             angle = own.course + side * 0.5 * math.pi
             point = (own.north + radius * math.cos(angle), own.east + radius * math.sin(angle))
-            room = float((_distances(known, point) - known.keep).min(initial=math.inf))
+            room = float((_distances(circles.centres, point) - circles.keep).min(initial=math.inf))
             if room > most:
                 centre, direction, most = point, side, room
         return Hold(
@@ -333,27 +375,25 @@ class Agent:
         )
 
     def _resume(self, own: Ownship, route: Route, known: Known) -> Decision:
-        """End a hold, or undo a detour round an intruder that has passed."""
+        """End a hold, or undo a detour whose reason has gone: the intruder passed, a false track died."""
         if self._holding:
             self._holding = False
             self._failures = 0
             return Resume(why="the way is clear again", route=route.waypoints)
-        if not self._avoiding_intruder:
+        direct = tuple(w for w in route.waypoints if w.item is not None)
+        if direct == route.waypoints:
+            self._avoiding = frozenset()
+        if not direct or not self._avoiding or not self._avoiding.isdisjoint(known.ids.tolist()):
             return CLEAR
-        ahead = 0
-        while ahead < len(route.waypoints) and route.waypoints[ahead].item is None:
-            ahead += 1
-        if ahead == 0:
-            self._avoiding_intruder = False
+        self._retry_at = own.time  # ask again at the next scan, whether or not anything new is seen
+        ahead = next(i for i, w in enumerate(route.waypoints) if w.item is not None)
+        straight = Route(Waypoint(own.north, own.east, own.altitude), route.waypoints[ahead:])
+        blocked = first_blocked_leg(own, straight, known, self._performance, slack=0.0)
+        if ahead == 0 or blocked or first_conflict(own, straight, known, resuming=True):
             return CLEAR
-        here = Waypoint(own.north, own.east, own.altitude)
-        direct = Route(origin=here, waypoints=route.waypoints[ahead:])
-        if first_blocked_leg(own, direct, known, self._performance, 0.0) is not None:
-            return CLEAR
-        if first_conflict(own, direct, known, resuming=True) is not None:
-            return CLEAR
-        self._avoiding_intruder = False
-        return Resume(why="the intruder has passed", route=direct.waypoints)
+        who = obstacles(tuple(sorted(self._avoiding)))
+        self._avoiding = frozenset()
+        return Resume(why=f"{who} is no longer in the way", route=straight.waypoints)
 
 
 def _straight_on(blocked: Blocked, waypoints: tuple[Waypoint, ...], was_straight: bool) -> Decision:
@@ -364,12 +404,5 @@ def _straight_on(blocked: Blocked, waypoints: tuple[Waypoint, ...], was_straight
     return Resume(why=why, threat=blocked.threat, rung=Rung.ROUTE, route=waypoints)
 
 
-def _distances(known: Known, point: tuple[float, float]) -> Floats:
-    return np.hypot(known.centres[:, 0] - point[0], known.centres[:, 1] - point[1])
-
-
-def _least_separation(problem: WaypointProblem, radius: float) -> WaypointProblem:
-    """The same search, content with the violation radius instead of d + h."""
-    intruders = problem.intruders
-    required = np.minimum(intruders.required, radius + 50.0)
-    return replace(problem, intruders=replace(intruders, required=required))
+def _distances(centres: Floats, point: tuple[float, float]) -> Floats:
+    return np.hypot(centres[:, 0] - point[0], centres[:, 1] - point[1])

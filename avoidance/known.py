@@ -1,9 +1,10 @@
-"""What the tracks mean for a flight at one altitude: circles to stay out of, intruders to stay clear of."""
+"""What the tracks mean for a flight: circles to stay out of, intruders to stay clear of."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,7 @@ ALTITUDE_TOLERANCE = 15.0
 """The vehicle keeps its altitude within this [m]."""
 SIGMAS = 3.0
 """Spheres grow by this many standard deviations of their position."""
-CLOSE = 3000.0
+CLOSE = 2000.0
 """An unconfirmed contact nearer than this is believed at once [m]."""
 KNOWN_SPEED = 3.5
 """Whether a track moves is undecided while the standard deviation of its speed exceeds this [m/s]."""
@@ -27,38 +28,81 @@ LARGEST_DOUBT = 400.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Circles:
+    """What stands still, cut at the altitudes of a leg: circles that the leg must keep out of."""
+
+    rows: Ints
+    """Which obstacle of `Known` each is, shape (c,)."""
+    centres: Floats
+    """North and east [m], shape (c, 2)."""
+    keep: Floats
+    """Distance that the flown curve keeps: radius of the cut + margin [m], shape (c,)."""
+    keep_waypoint: Floats
+    """Distance that a new waypoint keeps: the same + tolerance [m], shape (c,)."""
+    slack: Floats
+    """A route is left alone until it comes nearer than `keep` by this [m], shape (c,)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Known:
-    """Obstacles as circles in the plane of flight."""
+    """What is known of the obstacles, as it matters for a flight."""
 
     ids: Ints
     """Radar identities of what stands still, shape (d,)."""
     centres: Floats
     """North and east [m], shape (d, 2)."""
-    keep: Floats
-    """Distance that the flown curve keeps: radius at flight altitude + margin [m], shape (d,)."""
-    keep_waypoint: Floats
-    """Distance that a new waypoint keeps: the same + tolerance [m], shape (d,)."""
+    altitudes: Floats
+    """Above home [m], shape (d,)."""
+    radii: Floats
+    """Radii of the spheres [m], shape (d,)."""
+    margin: Floats
+    """What is kept beyond the sphere [m], shape (d,)."""
+    tolerance: Floats
+    """What a new waypoint keeps beyond the sphere [m], shape (d,)."""
     slack: Floats
-    """A route is left alone until it comes nearer than `keep` by this [m], shape (d,)."""
+    """A route is left alone until it comes nearer than is to be kept by this [m], shape (d,)."""
+    most: Floats
+    """No more than this can be kept, for the vehicle is too near already [m], shape (d,)."""
     intruder_ids: Ints
     """Radar identities of what moves, shape (q,)."""
     intruders: Intruders
     """Where it is, how it moves, and the distance to keep."""
 
+    def circles(self, low: float, high: float) -> Circles:
+        """The circles that count between two altitudes [m].
+
+        Notes
+        -----
+        Spheres are cut at the altitude between `low` and `high`, give or take the vehicle's tolerance, that
+        is nearest to their centre; one more than its radius above or below does not count.
+        """
+        above = np.maximum(self.altitudes - high, low - self.altitudes) - ALTITUDE_TOLERANCE
+        height = np.maximum(above, 0.0)
+        rows = np.flatnonzero(height < self.radii)
+        cut = np.sqrt(self.radii[rows] ** 2 - height[rows] ** 2)
+        keep = cut + self.margin[rows]
+        return Circles(
+            rows=rows,
+            centres=self.centres[rows],
+            keep=np.minimum(keep, self.most[rows]),
+            keep_waypoint=np.maximum(cut + self.tolerance[rows], keep),
+            slack=self.slack[rows],
+        )
+
 
 def known_obstacles(
     picture: Picture, own: Ownship, route: Route, performance: Performance, parameters: Parameters
 ) -> Known:
-    """Circles and intruders that count for the rest of a route.
+    """What the tracks mean for the rest of a route.
 
     Parameters
     ----------
     picture : Picture
         Tracks.
     own : Ownship
-        Position, for the altitude band and for what is close.
+        Position, for what is close and for intruders.
     route : Route
-        Its altitudes.
+        Its altitudes, for intruders.
     performance : Performance
         Tracking error of the vehicle.
     parameters : Parameters
@@ -67,85 +111,79 @@ def known_obstacles(
     Returns
     -------
     Known
-
-    Notes
-    -----
-    Spheres are cut at flight altitude; an obstacle more than its radius above or below does not count.
     """
     distance = np.hypot(picture.positions[:, 0] - own.north, picture.positions[:, 1] - own.east)
-    believed = (picture.confirmed & (picture.speed_sigma < KNOWN_SPEED)) | (distance < CLOSE)
+    decided = picture.confirmed & (picture.speed_sigma < KNOWN_SPEED)
+    believed = decided | (distance < CLOSE)
     still = believed & ~picture.moving
     moving = believed & picture.moving & (distance < parameters.reaction_distance)
     if not parameters.predict:
         still, moving = still | moving, np.zeros_like(moving)
-    radii = np.where(picture.moving, parameters.moving_radius, picture.radii)
-    height = _outside_band(picture.positions[:, 2], own, route)
-    cut = np.sqrt(np.maximum(radii**2 - height**2, 0.0))
-    still &= cut > 0.0
-    moving &= cut > 0.0
-    margin = max(parameters.margin, performance.tracking_error) + SIGMAS * picture.sigma
-    keep = cut + margin
-    tolerance = np.where(picture.moving, 0.0, parameters.tolerance)
+    own_radius = np.where(picture.moving, parameters.moving_radius, parameters.safety_radius)
+    radii = np.where(np.isnan(picture.radii), own_radius, picture.radii)
+    doubt = SIGMAS * picture.sigma
+    margin = max(parameters.margin, performance.tracking_error) + doubt
+    tolerance = np.where(picture.moving, 0.0, parameters.tolerance) + doubt
     return Known(
         ids=picture.ids[still],
         centres=picture.positions[still, :2],
-        keep=keep[still],
-        keep_waypoint=np.maximum(cut + tolerance + SIGMAS * picture.sigma, keep)[still],
-        slack=parameters.hysteresis + SIGMAS * picture.sigma[still],
-        intruder_ids=picture.ids[moving],
-        intruders=_intruders(picture, moving, cut, own, parameters),
+        altitudes=picture.positions[still, 2],
+        radii=radii[still],
+        margin=margin[still],
+        tolerance=tolerance[still],
+        slack=parameters.hysteresis + doubt[still],
+        most=np.full(int(still.sum()), np.inf),
+        **_traffic(picture, moving, radii, own, route, parameters),
     )
 
 
-def _intruders(
-    picture: Picture, moving: Bools, cut: Floats, own: Ownship, parameters: Parameters
-) -> Intruders:
+def _traffic(
+    picture: Picture, moving: Bools, radii: Floats, own: Ownship, route: Route, parameters: Parameters
+) -> dict[str, Any]:
     """What moves, with what is to be kept: more, and called a conflict later, the less sure its path is."""
+    height = _outside_band(picture.positions[:, 2], own, route)
+    cut = np.sqrt(np.maximum(radii**2 - height**2, 0.0))
+    moving = moving & (cut > 0.0)
     positions, velocities = picture.positions[moving, :2], picture.velocities[moving]
     relative = positions - np.array([own.north, own.east])
     closing = velocities - np.array([own.velocity_north, own.velocity_east])
     square = np.maximum((closing**2).sum(axis=1), 1e-6)
     time = np.clip(-(relative * closing).sum(axis=1) / square, 0.0, LONGEST_LOOK)
     doubt = np.hypot(picture.sigma[moving], picture.speed_sigma[moving] * time)
-    added = np.minimum(doubt, LARGEST_DOUBT)
     least = cut[moving] + parameters.moving_margin
-    return Intruders(
-        positions=positions,
-        velocities=velocities,
-        required=least + added,
-        conflict=np.maximum(least - 0.5 * parameters.moving_margin - doubt, 0.0),
-    )
+    return {
+        "intruder_ids": picture.ids[moving],
+        "intruders": Intruders(
+            positions=positions,
+            velocities=velocities,
+            required=least + np.minimum(doubt, LARGEST_DOUBT),
+            conflict=np.maximum(least - 0.5 * parameters.moving_margin - doubt, 0.0),
+            radii=cut[moving],
+        ),
+    }
 
 
-def within_reach(known: Known, own: Ownship, performance: Performance) -> Known:
-    """The same with circles shrunk where the vehicle is too near to keep the margin.
+def keep_what_can_be_kept(known: Known, own: Ownship, performance: Performance) -> Known:
+    """The same, asking no more distance of an obstacle than can be kept.
 
     What lies within the distance flown before any command takes effect cannot be helped; a search that
-    insisted on the margin there would find nothing.
+    insisted on the margin there would find nothing. Below the sphere's radius this goes only where the
+    vehicle is about to be inside the sphere whatever it does.
     """
-    if not len(known.keep):
+    if not len(known.ids):
         return known
     run = performance.airspeed * (performance.roll_time + 1.0)
     ahead = np.array([math.cos(own.course), math.sin(own.course)])
     offset = known.centres - np.array([own.north, own.east])
     along = np.clip(offset @ ahead, 0.0, run)
     nearest = np.hypot(offset[:, 0] - along * ahead[0], offset[:, 1] - along * ahead[1])
-    if bool((nearest > known.keep).all()):
+    if bool((nearest > known.radii + known.margin).all()):
         return known
-    keep = np.minimum(known.keep, np.maximum(nearest - 1.0, 0.0))
-    return Known(
-        ids=known.ids,
-        centres=known.centres,
-        keep=keep,
-        keep_waypoint=known.keep_waypoint,
-        slack=known.slack,
-        intruder_ids=known.intruder_ids,
-        intruders=known.intruders,
-    )
+    return replace(known, most=np.maximum(nearest - 1.0, 0.0))
 
 
 def _outside_band(altitudes: Floats, own: Ownship, route: Route) -> Floats:
-    """How far altitudes lie above or below those flown from now on [m]."""
+    """How far altitudes lie above or below those flown next [m]."""
     flown = [own.altitude, *(waypoint.altitude for waypoint in route.waypoints[:3])]
     low, high = min(flown) - ALTITUDE_TOLERANCE, max(flown) + ALTITUDE_TOLERANCE
     return np.maximum(np.maximum(low - altitudes, altitudes - high), 0.0)

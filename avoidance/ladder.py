@@ -32,6 +32,9 @@ RUNGS: tuple[tuple[Rung, frozenset[str]], ...] = (
 LARGEST_CORNER = math.radians(40.0)
 """Heading change of a corner of an exact route [rad]."""
 
+ROOM_LEFT = 50.0
+"""A separation from an intruder is worth a change of route if it is better by this [m]."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
@@ -68,13 +71,43 @@ def way_round(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None
             return Plan(rung, (search.found,), search)
         if best is None or added < best[0] - worth:
             best = (added, Plan(rung, (search.found,), search))
-    route = exact_route(problem)
+    route = _kept_from_intruders(problem, exact_route(problem))
     if best is None:
         return None if route is None or search is None else Plan(Rung.ROUTE, route, search)
     single = best[1]
     if route and _length(problem, route) < _length(problem, single.waypoints) - worth:
         return Plan(Rung.ROUTE, route, single.search)
     return single
+
+
+def widest_way(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None:
+    """The waypoint that keeps furthest from intruders where d + h cannot be kept from all of them.
+
+    First with the violation radius instead of d + h; then the least violating point that is clear of all
+    that stands still, if it keeps more from them than flying straight on.
+    """
+    intruders = problem.intruders
+    close = replace(intruders, required=np.minimum(intruders.required, intruders.radii + ROOM_LEFT))
+    plan = way_round(replace(problem, intruders=close), rng)
+    if plan is not None:
+        return plan
+    search = search_waypoint(replace(problem, relaxed=RUNGS[-1][1]), rng)
+    point = np.array([search.least_violating])
+    here = search.problem if isinstance(search.problem, WaypointProblem) else problem
+    broken = here.constraints(point)
+    straight = here.separation_shortfall(())
+    if broken["g3"][0] > 0.0 or here.separation_shortfall(point[:1].tolist()) > straight - ROOM_LEFT:
+        return None
+    return Plan(Rung.CLOSE, (search.least_violating,), search)
+
+
+def _kept_from_intruders(
+    problem: WaypointProblem, route: tuple[tuple[float, float], ...] | None
+) -> tuple[tuple[float, float], ...] | None:
+    """The route, if it keeps from intruders what is to be kept."""
+    if route is None or problem.separation_shortfall(route) > 0.0:
+        return None
+    return route
 
 
 def exact_route(problem: WaypointProblem) -> tuple[tuple[float, float], ...] | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -40,6 +41,8 @@ class Intruders:
     """What a new route keeps from each: d + h and the doubt about its path [m], shape (q,)."""
     conflict: Floats = field(default_factory=lambda: np.empty(0))
     """A route is left alone until it comes nearer than this [m], shape (q,)."""
+    radii: Floats = field(default_factory=lambda: np.empty(0))
+    """Distance that is a violation: d, or the radius that the sensor gave [m], shape (q,)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -139,6 +142,15 @@ class WaypointProblem:
         starts, ends, extra = flown_segments(route, self.course, self.performance)
         skip = 0 if self.before is None else 1  # the leg that leads to the start is another search's
         return feasible_segments(starts[:, skip:], ends[:, skip:], extra[:, skip:], self.centres, self.keep)
+
+    def separation_shortfall(self, waypoints: Sequence[Sequence[float]]) -> float:
+        """How much is missing to what is to be kept from intruders on a route by these waypoints [m]."""
+        if not len(self.intruders.required):
+            return 0.0
+        route = np.array([self.start, *waypoints, self.target], dtype=np.float64)[None]
+        moved = self.intruders.positions + self.delay * self.intruders.velocities
+        separation = route_separation(route, self.performance.airspeed, moved, self.intruders.velocities)
+        return float(max((self.intruders.required - separation).max(), 0.0))
 
     def _separated(self, points: Floats) -> Floats:
         route = np.empty((len(points), 3, 2))

@@ -15,6 +15,8 @@ from avoidance.prediction import route_separation
 from avoidance.problem import Intruders
 from avoidance.types import Floats, Ints, Ownship, Performance, Route, Threat
 
+LEVEL = 5.0
+"""A vehicle this near to the altitude of its waypoint flies level [m]."""
 INTRUDER_HORIZON = 900.0
 """Intruders are extrapolated no further than this [s]."""
 
@@ -28,7 +30,7 @@ class Blocked:
     leg: int
     """Index of the waypoint at its end."""
     blockers: Ints
-    """Indices into `Known` of the obstacles that cut it, nearest first; empty for an intruder."""
+    """Rows of `Known` of the obstacles that cut it, nearest first; empty for an intruder."""
 
 
 def remaining_points(own: Ownship, route: Route, tracking_error: float, capture_distance: float) -> Floats:
@@ -80,37 +82,58 @@ def first_blocked_leg(
     Algorithms 5 and 6, Eqs. (22)-(26), on the curve that will be flown. Differs from the paper: E17, a
     segment is tested and not an infinite line, which makes Algorithm 5 superfluous.
     """
-    if not len(known.keep) or not route.waypoints:
+    if not len(known.ids) or not route.waypoints:
         return None
     points = remaining_points(own, route, performance.tracking_error, performance.capture_distance)
     inserted = points.shape[1] - 1 - len(route.waypoints)
     starts, ends, extra = flown_segments(points, own.course, performance)
-    distance = segments_clearance(starts[0], ends[0], known.centres)
-    required = known.keep[None] - slack * known.slack[None] + extra[0][:, None]
-    cut = distance < required
-    if not cut.any():
-        return None
     legs = _leg_of_segment(points.shape[1], inserted)
-    leg = int(legs[cut.any(axis=1)].min())
-    mine = (legs == leg) & cut.any(axis=1)
-    blockers = np.flatnonzero(cut[mine].any(axis=0))
-    begin = points[0, 0] if leg == 0 else points[0, leg + inserted]
-    end = points[0, leg + inserted + 1]
-    entries = _entry_distances(begin, end, known.centres[blockers], known.keep[blockers])
-    order = np.argsort(entries, kind="stable")
-    blockers = blockers[order]
-    flown = _length(points[0, : leg + inserted + 1]) if leg else 0.0
-    nearest = int(blockers[0])
-    ahead = flown + float(entries[order[0]])
-    threat = Threat(
-        ids=tuple(int(i) for i in known.ids[blockers]),
-        leg=leg,
-        distance=ahead,
-        time=ahead / max(own.ground_speed, 1.0),
-        clearance=float(distance[mine][:, nearest].min()),
-        required=float(known.keep[nearest]),
-    )
-    return Blocked(threat, leg, blockers)
+    first: Blocked | None = None
+    for band, owners in _altitude_bands(own, route).items():
+        circles = known.circles(*band)
+        mine = np.flatnonzero(np.isin(legs, owners))
+        distance = segments_clearance(starts[0, mine], ends[0, mine], circles.centres)
+        cut = distance < (circles.keep - slack * circles.slack)[None] + extra[0, mine, None]
+        if not cut.any():
+            continue
+        leg = int(legs[mine][cut.any(axis=1)].min())
+        if first is not None and first.leg <= leg:
+            continue
+        on_leg = (legs[mine] == leg) & cut.any(axis=1)
+        clearance = distance[on_leg].min(axis=0)
+        blockers = np.flatnonzero(cut[on_leg].any(axis=0))
+        corner = leg + inserted + 1
+        begin = 0 if leg == 0 else corner - 1
+        entries = _entry_distances(
+            points[0, begin], points[0, corner], circles.centres[blockers], circles.keep[blockers]
+        )
+        order = np.argsort(entries, kind="stable")
+        nearest = int(blockers[order[0]])
+        ahead = _length(points[0, : begin + 1]) + float(entries[order[0]])
+        rows = circles.rows[blockers[order]]
+        threat = Threat(
+            ids=tuple(dict.fromkeys(known.ids[rows].tolist())),
+            leg=leg,
+            distance=ahead,
+            time=ahead / max(own.ground_speed, 1.0),
+            clearance=float(clearance[nearest]),
+            required=float(circles.keep[nearest]),
+        )
+        first = Blocked(threat, leg, rows)
+    return first
+
+
+def _altitude_bands(own: Ownship, route: Route) -> dict[tuple[float, float], list[int]]:
+    """Legs by the altitudes between which they are flown, lowest and highest [m]."""
+    bands: dict[tuple[float, float], list[int]] = {}
+    before = own.altitude
+    for leg, waypoint in enumerate(route.waypoints):
+        after = waypoint.altitude
+        if abs(after - before) < LEVEL:
+            before = after
+        bands.setdefault((min(before, after), max(before, after)), []).append(leg)
+        before = after
+    return bands
 
 
 def first_conflict(own: Ownship, route: Route, known: Known, resuming: bool = False) -> Blocked | None:

@@ -87,6 +87,7 @@ def search_waypoint(problem: WaypointProblem, rng: np.random.Generator) -> Searc
         radii=problem.keep,
         planner=parameters.optimiser,
         found=best if feasible else None,
+        least_violating=best,
         cost=optimiser.best_cost if feasible else float("nan"),
         iterations=iterations,
         evaluations=evaluations,

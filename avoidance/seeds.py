@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from avoidance.geometry import segment_point_distance, segments_clearance
 from avoidance.problem import INFEASIBLE, WaypointProblem
 from avoidance.types import Floats, Ints
 
@@ -20,6 +21,8 @@ CORNER_PADS = (OUTSIDE, 6.0, 20.0, 60.0)
 """Tangents that meet near their circle are drawn this far outside, so that the turn stays outside too [m]."""
 CHUNK = 48
 """Candidates tested at once for feasibility."""
+MOST_OBSTACLES = 40
+"""Obstacles whose curves are intersected; more would not fit a decision's budget."""
 CIRCLE_POINTS = 24
 """Points on each circle that the waypoint must keep clear of."""
 REACH = 2000.0
@@ -97,11 +100,11 @@ def rule_seeds(problem: WaypointProblem, count: int) -> tuple[Floats, int]:
         keep = problem.keep[near]
         keep_waypoint = (keep if "g1" in problem.relaxed else problem.keep_waypoint[near]) + OUTSIDE
         for pad in CORNER_PADS:
-            from_start = _tangent_directions(problem.start, centres, keep + pad)
-            from_target = _tangent_directions(problem.target, centres, keep + pad)
+            from_start = _open_tangents(problem, problem.start, centres, keep + pad)
+            from_target = _open_tangents(problem, problem.target, centres, keep + pad)
             candidates.append(_cross(problem.start, from_start, problem.target, from_target))
-        from_start = _tangent_directions(problem.start, centres, keep + OUTSIDE)
-        from_target = _tangent_directions(problem.target, centres, keep + OUTSIDE)
+        from_start = _open_tangents(problem, problem.start, centres, keep + OUTSIDE)
+        from_target = _open_tangents(problem, problem.target, centres, keep + OUTSIDE)
         candidates += [
             _pierce(problem.start, from_start, centres, keep_waypoint),
             _pierce(problem.target, from_target, centres, keep_waypoint),
@@ -114,14 +117,19 @@ def rule_seeds(problem: WaypointProblem, count: int) -> tuple[Floats, int]:
 
 
 def _near(problem: WaypointProblem) -> Ints:
-    """Obstacles that can bound the search."""
+    """Obstacles that can bound the search: about what is avoided, the nearest to the straight leg first."""
     if not len(problem.avoided):
         return problem.avoided
     members = problem.centres[problem.avoided]
     low = members.min(axis=0) - problem.parameters.search_limit - REACH
     high = members.max(axis=0) + problem.parameters.search_limit + REACH
-    inside = ((problem.centres >= low) & (problem.centres <= high)).all(axis=1)
-    return np.flatnonzero(inside)
+    inside = np.flatnonzero(((problem.centres >= low) & (problem.centres <= high)).all(axis=1))
+    if len(inside) <= MOST_OBSTACLES:
+        return inside
+    gap = (
+        segment_point_distance(problem.start, problem.target, problem.centres[inside]) - problem.keep[inside]
+    )
+    return np.sort(inside[np.argsort(gap, kind="stable")[:MOST_OBSTACLES]])
 
 
 def _terminals(problem: WaypointProblem, members: Ints) -> tuple[int, int]:
@@ -133,14 +141,20 @@ def _terminals(problem: WaypointProblem, members: Ints) -> tuple[int, int]:
     return int(members[int(np.argmin(side))]), int(members[int(np.argmax(side))])
 
 
-def _tangent_directions(point: tuple[float, float], centres: Floats, radii: Floats) -> Floats:
-    """Directions of both tangents from a point to each circle, shape (2d,) [rad]."""
+def _open_tangents(
+    problem: WaypointProblem, point: tuple[float, float], centres: Floats, radii: Floats
+) -> Floats:
+    """Directions of the tangents from a point to circles that nothing blocks before they touch [rad]."""
     offset = centres - np.array(point)
     distance = np.hypot(offset[:, 0], offset[:, 1])
     outside = distance > radii
     bearing = np.arctan2(offset[outside, 1], offset[outside, 0])
     opening = np.arcsin(radii[outside] / distance[outside])
-    return np.concatenate([bearing - opening, bearing + opening])
+    reach = np.sqrt(distance[outside] ** 2 - radii[outside] ** 2)
+    angle = np.concatenate([bearing - opening, bearing + opening])
+    touch = np.tile(reach, 2)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1) + np.array(point)
+    gap = segments_clearance(np.broadcast_to(np.array(point), touch.shape), touch, problem.centres)
+    return angle[(gap >= problem.keep - OUTSIDE).all(axis=1)]
 
 
 def _cross(start: tuple[float, float], first: Floats, target: tuple[float, float], second: Floats) -> Floats:

@@ -49,7 +49,7 @@ class Picture:
     velocities: Floats
     """North, east over ground [m/s], 0 for what stands still, shape (n, 2)."""
     radii: Floats
-    """Safety radius RS [m], shape (n,)."""
+    """Safety radius RS that the sensor gave [m], NaN where it gave none, shape (n,)."""
     sigma: Floats
     """Standard deviation of the horizontal position [m], shape (n,)."""
     speed_sigma: Floats
@@ -81,8 +81,8 @@ class Tracker:
     Kalman filter per track (Bar-Shalom, Li & Kirubarajan 2001, 6.3) whose covariance is widened when an
     innovation is too large for straight flight; beside it the running mean for what stands still.
     Algorithm 2. Differs from the paper: E31, its range test misses receding, crossing and same-course
-    traffic; here a track moves when its estimated speed is significant. With `memory` off the picture holds the current scan only, and Algorithm 2 decides as
-    printed.
+    traffic; here a track moves when its estimated speed is significant. With `memory` off the picture holds
+    the current scan only, and Algorithm 2 decides as printed.
     """
 
     def __init__(self, parameters: Parameters) -> None:
@@ -201,9 +201,7 @@ class Tracker:
         self._altitude = np.concatenate([self._altitude, scan.positions[new, 2]])
         self._mean = np.concatenate([self._mean, scan.positions[new]])
         self._weight = np.concatenate([self._weight, np.zeros(count)])
-        self._radius = np.concatenate(
-            [self._radius, np.where(np.isnan(radii), self._parameters.safety_radius, radii)]
-        )
+        self._radius = np.concatenate([self._radius, radii])
         self._hits = np.concatenate([self._hits, np.zeros(count, dtype=np.int64)])
         self._misses = np.concatenate([self._misses, np.zeros(count, dtype=np.int64)])
         self._seen = np.concatenate([self._seen, np.full(count, scan.time)])
@@ -229,7 +227,7 @@ class Tracker:
         self._mean[rows] += shift / (variance * self._weight[rows])[:, None]
         self._ids[rows] = scan.ids
         known = ~np.isnan(scan.radii)
-        self._radius[rows[known]] = np.maximum(self._radius[rows[known]], scan.radii[known])
+        self._radius[rows[known]] = np.fmax(self._radius[rows[known]], scan.radii[known])
         self._hits[rows] += 1
         self._misses += 1
         self._misses[rows] = 0
@@ -310,13 +308,12 @@ class Tracker:
             and np.array_equal(shown.moving, moving)
         ):
             self._version += 1
-        radii = np.where(np.isnan(scan.radii), self._parameters.safety_radius, scan.radii)
         count = len(keys)
         self._picture = Picture(
             ids=scan.ids,
             positions=scan.positions,
             velocities=np.zeros((count, 2)),
-            radii=radii,
+            radii=scan.radii,
             sigma=np.zeros(count),
             speed_sigma=np.zeros(count),
             moving=moving.astype(np.bool_),

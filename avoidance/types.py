@@ -283,6 +283,8 @@ class Search:
     """Name of the planner that searched."""
     found: tuple[float, float] | None = None
     """The waypoint, north and east [m]; None if there was none."""
+    least_violating: tuple[float, float] = (math.nan, math.nan)
+    """The best point looked at, whether or not it meets every constraint [m]."""
     cost: float = math.nan
     """f of Eq. 6 at the waypoint."""
     iterations: int = 0

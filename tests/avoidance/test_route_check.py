@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from avoidance import Ownship, RadarScan, Route
-from avoidance.known import Known, known_obstacles, within_reach
+from avoidance.known import Known, keep_what_can_be_kept, known_obstacles
 from avoidance.parameters import DEFAULT
 from avoidance.problem import Intruders
 from avoidance.route_check import first_blocked_leg, first_conflict
@@ -63,13 +63,13 @@ def test_the_inside_of_a_corner_counts() -> None:
 
 def test_spheres_are_cut_at_flight_altitude() -> None:
     own, way = ownship(), route((40_000.0, 0.0))
-    circle = known([(5000.0, 0.0)], own, way, altitude=815.0)  # 600 m above the band
+    circle = known([(5000.0, 0.0)], own, way, altitude=815.0).circles(200.0, 200.0)  # 600 m above the band
     assert circle.keep[0] == pytest.approx(800.0 + DEFAULT.margin)
 
 
 def test_circles_shrink_where_the_margin_cannot_be_kept_any_more() -> None:
     own, way = ownship(), route((40_000.0, 0.0))
-    near = within_reach(known([(0.0, 1020.0)], own, way), own, PERFORMANCE)
+    near = keep_what_can_be_kept(known([(0.0, 1020.0)], own, way), own, PERFORMANCE).circles(200.0, 200.0)
     assert near.keep[0] == pytest.approx(1019.0)
 
 
