@@ -114,8 +114,9 @@ def nearest_reachable(
     Notes
     -----
     The nearest point of what discs leave free is the target, its foot on one circle, or a crossing of two.
+    Where the target is a centre every point of the circle is as near; its foot is then towards the start.
     """
-    for north, east in _candidates(np.asarray(target, dtype=np.float64), centres, safe):
+    for north, east in _candidates(np.asarray(target, dtype=np.float64), np.asarray(start), centres, safe):
         if not separated(start, (north, east), centres, walls):
             return north, east
     return None
@@ -154,20 +155,23 @@ def separated(a: tuple[float, float], b: tuple[float, float], centres: Floats, r
     return bool((np.abs(mismatch) > np.pi).any())
 
 
-def _candidates(target: Floats, centres: Floats, radii: Floats) -> Iterator[tuple[float, float]]:
+def _candidates(
+    target: Floats, start: Floats, centres: Floats, radii: Floats
+) -> Iterator[tuple[float, float]]:
     """Free points, nearest to the target first: itself, feet on circles, crossings of circles."""
-    points = np.concatenate((target[None, :], _feet(target, centres, radii), _crossings(centres, radii)))
+    points = np.concatenate(
+        (target[None, :], _feet(target, start, centres, radii), _crossings(centres, radii))
+    )
     free = (_distances(points, centres) >= radii[None, :] - SLACK).all(axis=1)
     points = points[free]
     away = np.hypot(points[:, 0] - target[0], points[:, 1] - target[1])
     yield from ((north, east) for north, east in points[np.argsort(away, kind="stable")].tolist())
 
 
-def _feet(target: Floats, centres: Floats, radii: Floats) -> Floats:
+def _feet(target: Floats, start: Floats, centres: Floats, radii: Floats) -> Floats:
     out = target - centres
-    away = np.hypot(out[:, 0], out[:, 1])
-    out[away == 0.0] = (1.0, 0.0)
-    return centres + out * (radii / np.where(away == 0.0, 1.0, away))[:, None]
+    out[(out == 0.0).all(axis=1)] = start - target if (start != target).any() else (1.0, 0.0)
+    return centres + out * (radii / np.hypot(out[:, 0], out[:, 1]))[:, None]
 
 
 def _crossings(centres: Floats, radii: Floats) -> Floats:

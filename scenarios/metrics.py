@@ -90,11 +90,16 @@ def first_pass(
 
     None if it never is. The time is that of the nearest point on the first segment that comes near enough.
     """
-    relative = track.positions[:, :2] - np.asarray(point)
-    distances, fractions = _segment_minima(relative)
-    times = track.times[:-1] + fractions * np.diff(track.times)
-    near = np.flatnonzero((distances <= radius) & (track.times[1:] >= after))
-    return float(times[near[0]]) if near.size else None
+    part = _from_time(track, after)
+    if part is None:
+        return None
+    times, positions = part
+    distances, fractions = _segment_minima(positions[:, :2] - np.asarray(point))
+    near = np.flatnonzero(distances <= radius)
+    if not near.size:
+        return None
+    first = int(near[0])
+    return float(times[first] + fractions[first] * (times[first + 1] - times[first]))
 
 
 def nearest_pass(track: Track, point: tuple[float, float]) -> float:
