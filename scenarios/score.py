@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from avoidance import Hold, Performance
+from avoidance.known import ALTITUDE_TOLERANCE
 from avoidance.parameters import Parameters
 from avoidance.tangent_graph import shortest_path
 from avoidance.types import Floats
@@ -107,13 +108,15 @@ def replacement_rule(parameters: Parameters, performance: Performance) -> Replac
     """The published margins of a preset.
 
     By default a waypoint needs RS + margin + room to turn, and so does what replaces it. The paper
-    replaces what lies inside the sphere, by a point at RS + tolerance.
+    replaces what lies inside the sphere, by a point at RS + tolerance. Both keep their altitude within
+    `ALTITUDE_TOLERANCE`.
     """
     margin = max(parameters.margin, performance.tracking_error)
     turn = performance.turn_room
     if parameters.all_obstacles:
-        return ReplacementRule(margin, turn, (turn, 0.5 * turn))
-    return ReplacementRule(margin, 0.0, (parameters.tolerance - parameters.margin, turn))
+        return ReplacementRule(margin, turn, (turn, 0.5 * turn), ALTITUDE_TOLERANCE)
+    rooms = (parameters.tolerance - parameters.margin, turn)
+    return ReplacementRule(margin, 0.0, rooms, ALTITUDE_TOLERANCE)
 
 
 def waypoint_fates(track: Track, targets: Sequence[Goal], radius: float) -> list[Fate]:

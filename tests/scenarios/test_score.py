@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from avoidance.parameters import PRESETS
 from scenarios.goals import Goal
 from scenarios.load import parse
 from scenarios.score import waypoint_fates
@@ -46,6 +47,16 @@ def test_waypoints_are_met_in_order():
 def test_a_waypoint_that_nothing_stands_for_is_skipped():
     (fate,) = waypoint_fates(track((0.0, 0.0), (5.0, 0.0)), [Goal(1, 9e4, 0.0, None, 0.0)], 100.0)
     assert (fate.met, fate.passed_at, fate.missed_by) == (True, None, None)
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_the_judge_and_the_planner_agree_on_what_counts_at_an_altitude(name):
+    """A sphere whose lowest point is 5 m above the last waypoint."""
+    above = ON_A_WAYPOINT.replace("east_m = 0.0}]\nvehicle", "east_m = 0.0, altitude_m = 1205.0}]\nvehicle")
+    _, score = flown(parse(above), preset_name=name)
+    assert score.fates[1].goal.replaced
+    assert score.summary["waypoints_replaced"] == 1
+    assert score.safe
 
 
 def test_a_mission_that_ends_on_an_obstacle_is_completed():
