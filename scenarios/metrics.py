@@ -99,7 +99,8 @@ def first_pass(
     if not near.size:
         return None
     first = int(near[0])
-    return float(times[first] + fractions[first] * (times[first + 1] - times[first]))
+    after_it = min(first + 1, len(times) - 1)
+    return float(times[first] + fractions[first] * (times[after_it] - times[first]))
 
 
 def nearest_pass(track: Track, point: tuple[float, float]) -> float:
@@ -127,7 +128,12 @@ def _separation(identity: int, radius: float, times: Floats, relative: Floats, *
 
 
 def _segment_minima(relative: Floats) -> tuple[Floats, Floats]:
-    """Least distance of the origin from each segment [m], and where on it (0 start, 1 end), shape (m-1,)."""
+    """Least distance of the origin from each segment [m], and where on it (0 start, 1 end), shape (m-1,).
+
+    A single point is a segment without length.
+    """
+    if len(relative) == 1:
+        relative = np.repeat(relative, 2, axis=0)
     starts = relative[:-1]
     steps = np.diff(relative, axis=0)
     squares = np.einsum("ij,ij->i", steps, steps)
