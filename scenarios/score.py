@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from avoidance import Hold, Performance
+from avoidance.known import ALTITUDE_TOLERANCE
 from avoidance.parameters import Parameters
 from avoidance.tangent_graph import shortest_path
 from avoidance.types import Floats
@@ -31,9 +32,9 @@ class Fate:
     goal: Goal
     """Where it could be reached."""
     passed_at: float | None
-    """When it, or what stands for it, was passed within the acceptance radius [s]; None if never."""
+    """When the track was as near to it as can be, within the acceptance radius [s]; None if never."""
     missed_by: float | None
-    """Least distance of the track from the goal [m]; None if there is no goal."""
+    """How much farther than that from it the track stayed at its nearest [m]; None if there is no goal."""
 
     @property
     def met(self) -> bool:
@@ -85,8 +86,8 @@ def score(flown: Flown) -> Score:
 
     Notes
     -----
-    Completed: the vehicle reached the end of its mission, and every waypoint, or the point that
-    `scenarios.goals` finds for it, was passed in order within the acceptance radius.
+    Completed: the vehicle reached the end of its mission and, in order, came as near to every waypoint as
+    `scenarios.goals` finds possible, within the acceptance radius.
     """
     wall = flown.wall.total
     vehicles = tuple(score_vehicle(flown, vehicle) for vehicle in flown.vehicles)
@@ -188,24 +189,31 @@ def replacement_rule(parameters: Parameters, performance: Performance) -> Replac
     """The published margins of a preset.
 
     By default a waypoint needs RS + margin + room to turn, and so does what replaces it. The paper
-    replaces what lies inside the sphere, by a point at RS + tolerance.
+    replaces what lies inside the sphere, by a point at RS + tolerance. Both keep their altitude within
+    `ALTITUDE_TOLERANCE`.
     """
     margin = max(parameters.margin, performance.tracking_error)
     turn = performance.turn_room
     if parameters.all_obstacles:
-        return ReplacementRule(margin, turn, (turn, 0.5 * turn))
-    return ReplacementRule(margin, 0.0, (parameters.tolerance - parameters.margin, turn))
+        return ReplacementRule(margin, turn, (turn, 0.5 * turn), ALTITUDE_TOLERANCE)
+    rooms = (parameters.tolerance - parameters.margin, turn)
+    return ReplacementRule(margin, 0.0, rooms, ALTITUDE_TOLERANCE)
 
 
 def waypoint_fates(track: Track, targets: Sequence[Goal], radius: float) -> list[Fate]:
-    """Which goals were passed within `radius` [m], in their order; the waypoint itself counts as well."""
+    """When each waypoint was met, in their order, within `radius` [m].
+
+    Notes
+    -----
+    A waypoint that was replaced is met anywhere within its shift + `radius`: several points may be equally
+    near to it (all of a circle, if an obstacle stands on it), and none of them is the right one.
+    """
     fates = []
     after = -math.inf
     for goal in targets:
-        places = [(goal.north, goal.east)] + ([goal.point] if goal.point and goal.replaced else [])
-        passes = [t for p in places if (t := first_pass(track, p, radius, after)) is not None]
-        passed = min(passes, default=None)
-        missed = None if goal.point is None else nearest_pass(track, goal.point)
+        place = (goal.north, goal.east)
+        passed = first_pass(track, place, goal.shift + radius, after)
+        missed = None if goal.point is None else max(nearest_pass(track, place) - goal.shift, 0.0)
         fates.append(Fate(goal, passed, missed))
         after = after if passed is None else passed
     return fates
