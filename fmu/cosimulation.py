@@ -75,7 +75,11 @@ class CoSimulation:
         if description.coSimulation is None:
             raise PlantError("load", 0.0, "unusable", f"{path}: Model Exchange only, no Co-Simulation")
         self._version = version
-        self._variables = {variable.name: variable for variable in description.modelVariables}
+        self._variables = {
+            variable.name: variable
+            for variable in description.modelVariables
+            if variable.type in _NUMBERS and not getattr(variable, "dimensions", ())
+        }
         self._groups: dict[tuple[str, ...], dict[str, tuple[list[int], list[int]]]] = {}
         self._nanoseconds = 0  # whole numbers do not drift
         self._log: deque[str] = deque(maxlen=10)
@@ -125,6 +129,31 @@ class CoSimulation:
     def time(self) -> float:
         """Since the start [s]."""
         return self._nanoseconds / 1e9
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of the scalar outputs that are numbers."""
+        return tuple(name for name, each in self._variables.items() if each.causality == "output")
+
+    def restart(self, start: Mapping[str, float]) -> None:
+        """Begin again at time zero with other start values; what is not named is as the FMU comes.
+
+        Raises
+        ------
+        ValueError
+            If a start value has an unknown name or is refused.
+        PlantError
+            If the FMU does not start.
+        """
+        self._nanoseconds = 0
+        try:
+            self._slave.reset()
+            self.write(start)
+            self._initialise()
+        except ValueError:
+            raise
+        except Exception as error:
+            raise PlantError("initialise", 0.0, "Error", self._said() or str(error)) from error
 
     def read(self, names: Sequence[str]) -> list[float]:
         """Values of variables, in the order of their names."""
@@ -187,7 +216,7 @@ class CoSimulation:
             groups: dict[str, tuple[list[int], list[int]]] = {}
             for place, name in enumerate(names):
                 variable = self._variables.get(name)
-                if variable is None or variable.type not in _NUMBERS:
+                if variable is None:
                     raise ValueError(f"{name!r}: the FMU has no such number")
                 kind = _CALLS.get(variable.type, {}).get(self._version, variable.type)
                 places, references = groups.setdefault(kind, ([], []))

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scenarios import __version__
+from scenarios import __version__, fmu_commands
 
 if TYPE_CHECKING:
     from avoidance.parameters import Parameters
@@ -29,6 +29,7 @@ app = typer.Typer(
     rich_markup_mode=None,  # plain help: rich would double the time it takes
     add_completion=False,
 )
+app.add_typer(fmu_commands.app)
 
 
 def main() -> None:

@@ -148,14 +148,17 @@ def test_wind_reaches_the_users_fmu_or_is_refused(users, tmp_path):
             plant.set_wind(0.0, 0.0, 1.0)
 
 
+NORTH = 'north = "state.north"'
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ('north = "state.north"', 'north = "state.nroth"', ("state.north.variable", "state.nroth", "state.north'?")),
-        ('north = "state.north"', "north = 3", ("state.north", "3")),
-        ('north = "state.north"', 'north = {variable = "state.north", scale = 0}', ("state.north.scale", "0")),
-        ('north = "state.north"', 'north = {variable = "state.north", factor = 2}', ("state.north.factor",)),
-        ('north = "state.north"', 'nord = "state.north"', ("state.nord is unknown", "state.north is missing")),
+        (NORTH, 'north = "state.nroth"', ("state.nroth", "north'?")),
+        (NORTH, "north = 3", ("state.north", "3")),
+        (NORTH, 'north = {variable = "state.north", scale = 0}', ("state.north.scale", "0")),
+        (NORTH, 'north = {variable = "state.north", factor = 2}', ("state.north.factor",)),
+        (NORTH, 'nord = "state.north"', ("state.nord is unknown", "state.north is missing")),
         ('mode = "command.mode"', 'mode = "state.north"', ("command.mode", "state.north", "output")),
         ('"initial.altitude" = 250', '"initial.altitud" = 250', ("start.initial.altitud = 250",)),
         ('"initial.altitude" = 250', '"initial.altitude" = "high"', ("start.initial.altitude", "high")),

@@ -28,7 +28,8 @@ class UserAircraft(Fmi2Slave):
             self.register_variable(Real(name, causality=Fmi2Causality.input))
         for name in ("wind_x", "wind_y"):
             self.register_variable(Real(name, causality=Fmi2Causality.input))
-        self.register_variable(Real("turn_limit", causality=Fmi2Causality.parameter, variability=Fmi2Variability.fixed))
+        limit = Real("turn_limit", causality=Fmi2Causality.parameter, variability=Fmi2Variability.fixed)
+        self.register_variable(limit)
 
     def do_step(self, now, duration):
         steps = max(1, math.ceil(duration / 0.05 - 1e-9))
