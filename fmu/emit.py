@@ -61,9 +61,9 @@ def model_description(token: str) -> str:
     can = dict.fromkeys(
         ("canGetAndSetFMUState", "canSerializeFMUState", "providesDirectionalDerivatives"), "true"
     )
-    ET.SubElement(root, "ModelExchange", modelIdentifier=MODEL, **can)
+    ET.SubElement(root, "ModelExchange", {"modelIdentifier": MODEL, **can})
     steps = ("canHandleVariableCommunicationStepSize", "hasEventMode", "mightReturnEarlyFromDoStep")
-    ET.SubElement(root, "CoSimulation", modelIdentifier=MODEL, **can, **dict.fromkeys(steps, "true"))
+    ET.SubElement(root, "CoSimulation", {"modelIdentifier": MODEL, **can, **dict.fromkeys(steps, "true")})
     add_units(ET.SubElement(root, "UnitDefinitions"))
     categories = ET.SubElement(root, "LogCategories")
     for name, text in CATEGORIES.items():

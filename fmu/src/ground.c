@@ -2,7 +2,8 @@
  *
  * Before its launch the aircraft stands, or rests on the catapult, with the nose raised by launch.pitch.
  * Catapult: constant acceleration along the body's forward axis up to launch.speed over launch.length.
- * Runway: it rolls level on its wheels, held at launch.pitch, until the air carries its weight.
+ * Runway: it rolls level on its wheels, held at launch.pitch, until it is as fast through the air as launch.speed
+ * and the air carries its weight.
  * A contact ends the flight where it happens: sliding and bouncing are not modelled. */
 #include <math.h>
 #include <string.h>
@@ -35,6 +36,7 @@ void ground_motion(const Model *m, const double x[], const double R[9], Loads *l
     if (v->launch_mode == LAUNCH_RUNWAY) {
         along[0] = sqrt(1.0 - clamp(R[6] * R[6], 0.0, 1.0)); /* level: sin(pitch) = -R[6] */
         along[2] = -R[6];
+        dx[X_ALTITUDE] = 0.0;
     }
     if (m->flight == FLIGHT_LAUNCHED) acceleration = launch_acceleration(m, x, R, loads);
     memset(dx + X_Q0, 0, 7 * sizeof(double));
@@ -56,7 +58,9 @@ static double launch_indicator(const Model *m) {
     Loads loads;
     airframe_derivative(&flying, x, dx, &loads);
     rotation_matrix(x + X_Q0, R);
-    return ground_reaction(m, R, &loads, x[X_ALTITUDE]);
+    double weight = ground_reaction(m, R, &loads, x[X_ALTITUDE]) / (m->v.aircraft_mass * 10.0);
+    double slow = 1.0 - loads.airspeed / m->v.launch_speed;
+    return weight > slow ? weight : slow;
 }
 
 void model_indicators(const Model *m, double z[N_INDICATORS]) {
