@@ -1,7 +1,7 @@
 """Time the aircraft FMU against its yardsticks: `python benchmarks/bench_fmu.py` prints Markdown tables.
 
 All subjects take turns in one run, so that a busy machine slows them alike; ratios are of medians. A
-yardstick that is not installed is left out, with its name (`pip install -e '.[dev,bench]'` has all of them).
+yardstick that is not installed is left out, with its name (`make bench` installs them all).
 """
 
 from __future__ import annotations

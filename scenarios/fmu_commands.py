@@ -55,14 +55,23 @@ def build(
 
 
 @app.command()
-def info(files: Files = None) -> None:
+def info(
+    files: Files = None,
+    *,
+    variables: Annotated[
+        bool, typer.Option("--variables", help="Print every variable, as Markdown, and nothing else.")
+    ] = False,
+) -> None:
     """Print where the FMUs lie and what is in them.
 
     Exit codes: 0 shown; 2 no such file; 3 no FMU.
     """
-    from fmu.contents import contents  # noqa: PLC0415
+    from fmu.contents import contents, variable_tables  # noqa: PLC0415
     from fmu.parameters import aircraft_names  # noqa: PLC0415
 
+    if variables:
+        typer.echo(variable_tables(), nl=False)
+        return
     with _errors():
         for file in _chosen(files):
             typer.echo(str(file.resolve()))
