@@ -180,7 +180,7 @@ def _fly_and_write(
                 if stop:
                     break
         flown = flight.result()
-    judged = score(flown)
+        judged = score(flown, hangar.energy())
     write_run(directory, flown, judged, write_report)
     if as_json:
         sys.stdout.write(summary_text(judged.summary))

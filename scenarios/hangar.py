@@ -14,6 +14,7 @@ from offboard.mission import MissionItem, MissionPlan
 from offboard.simulated import SimulatedVehicle
 from scenarios.errors import ScenarioError
 from scenarios.scenario import Fidelity, Point, Scenario, Traffic
+from scenarios.score import Energy
 from scenarios.world import FlownMover, Mover, PointMover
 
 if TYPE_CHECKING:
@@ -54,6 +55,7 @@ class Hangar:
         self._parameters = parameters
         self._library: FmuLibrary = FmuLibrary.open()
         self._plants: list[FmuPlant] = []
+        self._own: FmuPlant | None = None
 
     def __enter__(self) -> Self:
         return self
@@ -74,13 +76,22 @@ class Hangar:
         """The vehicle under test, at the start of its mission."""
         settings = self._scenario.vehicle
         radius = settings.acceptance_radius or self._parameters.acceptance_radius
-        return self._vehicle(
+        vehicle = self._vehicle(
             self._scenario.mission,
             airspeed=settings.airspeed,
             fidelity=settings.fidelity,
             acceptance_radius=radius,
             heading=settings.heading,
         )
+        self._own = self._plants[-1]
+        return vehicle
+
+    def energy(self) -> Energy:
+        """What is left in the battery of the vehicle under test."""
+        if self._own is None:
+            raise ValueError("own_vehicle() has not been called")
+        get = self._own.get
+        return Energy(get("battery.state_of_charge"), bool(get("battery.on_reserve")))
 
     def traffic(self) -> list[Mover]:
         """Everything that moves."""
@@ -122,6 +133,7 @@ class Hangar:
                 airspeed=airspeed,
                 home_elevation=self._scenario.home.altitude_m,
                 wind=(wind.north, wind.east, 0.0),
+                parameters=self._place_and_time(),
             )
         except ValueError as error:
             raise ScenarioError(self._scenario.name, f"the aircraft cannot be flown so: {error}") from error
@@ -139,6 +151,15 @@ class Hangar:
         vehicle.upload_mission(mission_plan(points, self.frame))
         vehicle.start_mission()
         return vehicle
+
+    def _place_and_time(self) -> dict[str, float]:
+        """Where and when the aircraft flies, for the sun on its wings."""
+        home = self._scenario.home
+        return {
+            "environment.latitude": math.radians(home.latitude_deg),
+            "environment.longitude": math.radians(home.longitude_deg),
+            "environment.start_time": self._scenario.start_time_utc.timestamp(),
+        }
 
 
 def mission_plan(points: Sequence[Point], frame: MapFrame) -> MissionPlan:

@@ -41,6 +41,16 @@ class Fate:
 
 
 @dataclass(frozen=True, slots=True)
+class Energy:
+    """What a flight has left of the battery."""
+
+    state_of_charge: float
+    """At the end, 0 to 1."""
+    reserve_used: bool
+    """Whether the reserve was touched at any time: a long hold or detour can do that."""
+
+
+@dataclass(frozen=True, slots=True)
 class Score:
     """A flight, judged."""
 
@@ -57,8 +67,8 @@ class Score:
         return bool(self.summary["completed"]) and self.summary["violations"] == 0
 
 
-def score(flown: Flown) -> Score:
-    """Judge a flight from its track alone, with all obstacles known.
+def score(flown: Flown, energy: Energy | None = None) -> Score:
+    """Judge a flight from its track alone, with all obstacles known; the battery is as the plant tells.
 
     Notes
     -----
@@ -81,6 +91,8 @@ def score(flown: Flown) -> Score:
         "flight_time_s": duration,
         "waypoints_replaced": replaced_waypoints(flown.decisions),
         "replans": sum(changes_route(entry) for entry in flown.decisions),
+        "state_of_charge": None if energy is None else round(energy.state_of_charge, 4),
+        "reserve_used": None if energy is None else energy.reserve_used,
         "decision_ms": decision_times([round(entry.milliseconds, 3) for entry in flown.decisions]),
         "wall_s": round(wall, 3),
         "real_time_factor": round(duration / wall, 1) if wall > 0.0 else None,
