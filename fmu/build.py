@@ -37,7 +37,7 @@ PACKAGED = FOLDER / f"{MODEL}.fmu"
 """Where the FMI 3.0 FMU lies once it has been built."""
 PACKAGED_FMI2 = FOLDER / f"{MODEL}_fmi2.fmu"
 """Where the FMI 2.0 FMU lies once it has been built; the same library, described as FMI 2.0 asks."""
-FLAGS = ("-std=c99", "-O3", "-g0", "-ffp-contract=off", "-fno-math-errno", "-fvisibility=hidden", "-shared")
+FLAGS = ("-std=c99", "-O3", "-g0", "-s", "-ffp-contract=off", "-fno-math-errno", "-shared")
 """No contraction to fused multiply-add: the same bits from every compiler."""
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 _ARCHITECTURES = {"amd64": "x86_64", "x86_64": "x86_64", "arm64": "aarch64", "aarch64": "aarch64"}
@@ -207,6 +207,19 @@ def build_fmu(
 ) -> Path:
     """Build both FMUs (see `build_fmus`); the path of the FMI 3.0 file."""
     return build_fmus(target, command, all_platforms=all_platforms)[0]
+
+
+def carries_all(path: Path = PACKAGED) -> bool:
+    """Whether a file holds a library for every platform of `TARGETS`, made from the present sources."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            names = archive.namelist()
+            current = archive.read("modelDescription.xml") == sources()["modelDescription.xml"].encode()
+    except (OSError, KeyError, zipfile.BadZipFile):
+        return False
+    return current and all(
+        any(name.startswith(f"binaries/{tuple_}/") for name in names) for tuple_ in TARGETS
+    )
 
 
 def _content_fmi3(files: Mapping[str, str], libraries: Mapping[str, bytes]) -> dict[str, bytes]:

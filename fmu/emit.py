@@ -135,9 +135,15 @@ typedef struct {{
     const char *name;
 }} ViewFact;
 
+#if defined(__GNUC__)
+#pragma GCC visibility push(hidden)
+#endif
 extern const VariableFact FACTS[N_VARIABLES];
 extern const ViewFact VIEWS[N_VIEWS];
 extern const uint32_t STATE_REFERENCES[{len(STATES)}];
+#if defined(__GNUC__)
+#pragma GCC visibility pop
+#endif
 
 #endif
 """

@@ -98,7 +98,7 @@ class FmuPlant:
             "initial.airspeed": airspeed,
         }
         ahead = (north + 1e3 * math.cos(heading), east + 1e3 * math.sin(heading))
-        self._values |= zip(_LEG + _HOLD, (north, east, *ahead, altitude, airspeed), strict=True)
+        self._values |= zip(_LEG + _HOLD, (north, east, *ahead, altitude, max(airspeed, 1.0)), strict=True)
         self._values |= zip(_WIND, wind, strict=True)
         self._values |= {"command.mode": LEG} | dict(parameters or {})
         self._instance = library.instantiate(name)

@@ -76,7 +76,7 @@ void model_sample(Model *m) {
     if (has_sun(m) && m->now >= m->next_sun) sun_sample(m);
     if (m->now < m->next_sample) return;
     double period = (double)sample_period(m) * 1e-9;
-    while (m->next_sample <= m->now) m->next_sample += sample_period(m);
+    m->next_sample = (m->now / sample_period(m) + 1) * sample_period(m);
     atmosphere_sample(m);
     if (!is_sampled(m) || m->flight != FLIGHT_FLYING) return;
     Motion motion;

@@ -5,6 +5,10 @@
 
 #include "model.h"
 
+#if defined(__GNUC__)
+#pragma GCC visibility push(hidden) /* only the functions of FMI leave the library */
+#endif
+
 /* Status values that both versions of FMI share. */
 enum { STATUS_OK, STATUS_WARNING, STATUS_DISCARD, STATUS_ERROR };
 
@@ -94,5 +98,9 @@ int component_restore(Component *c, const void *saved);
 size_t component_saved_size(void);
 int component_serialise(const Component *c, const void *saved, unsigned char bytes[], size_t size);
 int component_deserialise(const Component *c, const unsigned char bytes[], size_t size, void **saved);
+
+#if defined(__GNUC__)
+#pragma GCC visibility pop
+#endif
 
 #endif

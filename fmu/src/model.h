@@ -11,6 +11,10 @@
 
 #include "variables.h"
 
+#if defined(__GNUC__)
+#pragma GCC visibility push(hidden) /* only the functions of FMI leave the library */
+#endif
+
 #if defined(__clang__)
 #pragma STDC FP_CONTRACT OFF /* the same bits from every compiler; gcc needs -ffp-contract=off */
 #endif
@@ -253,5 +257,9 @@ static inline double wrap(double angle) {  /* into -pi .. pi, for angles within 
     while (angle < -PI) angle += 2.0 * PI;
     return angle;
 }
+
+#if defined(__GNUC__)
+#pragma GCC visibility pop
+#endif
 
 #endif
