@@ -32,6 +32,8 @@ FLIGHTS: tuple[Callable[[CoSimulation], Iterator[flights.Seen]], ...] = (
     flights.against_the_twin,
 )
 """What is flown on each FMU."""
+EXCHANGE_TIME = 10.0
+"""Flight by Model Exchange [s]."""
 _SCHEMAS = {
     "sources/buildDescription.xml": "fmi3BuildDescription.xsd",
     "terminalsAndIcons/terminalsAndIcons.xml": "fmi3TerminalsAndIcons.xsd",
@@ -74,11 +76,11 @@ def check(files: Sequence[Path], references: Path = nesc.DATA) -> Iterator[Findi
         If a file is no FMU or does not load on this machine.
     """
     for file in files:
-        read_description(file)  # what is no FMU at all is an error, not a finding
-        yield from _files(file)
-        with CoSimulation(file) as unit:
+        with CoSimulation(file) as unit:  # what does not load is an error, not a finding
+            yield from _files(file)
             for flight in FLIGHTS:
                 yield from _flown(file, unit, flight)
+        yield _exchange(file)
         yield from _nesc(file, references)
     for first, second in pairwise(files):
         yield _same_bits(first, second)
@@ -152,6 +154,36 @@ def _flown(
     if not findings:
         reason = "the independent model comes with the source tree, not with the package"
         yield Finding(_label(file), "twin", SKIPPED, reason)
+
+
+def _exchange(file: Path) -> Finding:
+    """Whether an importer's own solver, through Model Exchange, flies where Co-Simulation flies."""
+    from fmpy import simulate_fmu  # noqa: PLC0415  (slow import)
+
+    name = "Model Exchange"
+    if read_description(file).modelExchange is None:
+        return Finding(_label(file), name, SKIPPED, "the FMU has no such interface")
+    places = ("state.north", "state.east", "state.altitude")
+    commands = {"command.mode": 2, "command.orbit.east": 60.0, "command.orbit.radius": 60.0}
+    with CoSimulation(file, commands) as unit:
+        unit.step(EXCHANGE_TIME)
+        there = unit.read(places)
+    try:
+        flown = simulate_fmu(
+            str(file),
+            validate=False,
+            fmi_type="ModelExchange",
+            relative_tolerance=1e-10,
+            stop_time=EXCHANGE_TIME,
+            output_interval=EXCHANGE_TIME,
+            start_values=commands,
+            output=places,
+        )
+    except Exception as error:  # fmpy raises its own and the FMU's
+        return Finding(_label(file), name, FAILED, str(error))
+    apart = max(abs(float(flown[place][-1]) - value) for place, value in zip(places, there, strict=True))
+    detail = f"CVode and Co-Simulation {apart:.0e} m apart after {EXCHANGE_TIME:g} s of turning (1e-3 m)"
+    return Finding(_label(file), name, PASSED if apart < 1e-3 else FAILED, detail)
 
 
 def _nesc(file: Path, folder: Path) -> Iterator[Finding]:

@@ -29,6 +29,7 @@ def test_a_good_fmu_has_nothing_wrong(findings):
         "level trim, skywalker_x8",
         "climb, techpod",
         "determinism",
+        "Model Exchange",
         "conservation",
         "twin, skywalker_x8",
         "the same bits",

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import csv
+import subprocess
+import sys
 
 import pytest
 from typer.testing import CliRunner
@@ -40,6 +42,20 @@ def test_an_fmu_flies_alone_from_a_table_of_inputs(file, tmp_path):
     assert [float(row["time"]) for row in rows] == [0.5 * i for i in range(61)]
     assert float(rows[10]["state.altitude"]) == pytest.approx(200, abs=1e-2)
     assert float(rows[-1]["state.altitude"]) == pytest.approx(230, abs=0.5)
+
+
+@pytest.mark.parametrize("file", packaged(), ids=lambda path: path.stem)
+def test_fmpys_own_command_flies_it_from_the_same_table(file, tmp_path):
+    inputs, ours, theirs = (tmp_path / name for name in ("in.csv", "ours.csv", "theirs.csv"))
+    inputs.write_text("time,command.altitude\n0,200\n2,200\n2,240\n")
+    assert run("simulate", file, "-i", inputs, "-o", ours, "--stop", 8, "--step", 0.5).exit_code == 0
+    options = ("--stop-time", "8", "--output-interval", "0.5", "--output-variables", "state.altitude")
+    files = ("--input-file", str(inputs), "--output-file", str(theirs))
+    call = [sys.executable, "-m", "fmpy", "simulate", str(file), *files, *options]
+    subprocess.run(call, check=True, capture_output=True)
+    columns = [[float(row["state.altitude"]) for row in table(path)] for path in (ours, theirs)]
+    assert columns[0] == columns[1]
+    assert columns[0][-1] > 205
 
 
 def test_an_aircraft_start_values_and_columns_can_be_chosen(tmp_path):
