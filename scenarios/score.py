@@ -56,6 +56,16 @@ class VehicleScore:
 
 
 @dataclass(frozen=True, slots=True)
+class Energy:
+    """What a flight has left of the battery."""
+
+    state_of_charge: float
+    """At the end, 0 to 1."""
+    reserve_used: bool
+    """Whether the reserve was touched at any time: a long hold or detour can do that."""
+
+
+@dataclass(frozen=True, slots=True)
 class Score:
     """A flight, judged."""
 
@@ -81,8 +91,8 @@ class Score:
         return tuple(one for vehicle in self.vehicles for one in vehicle.separations)
 
 
-def score(flown: Flown) -> Score:
-    """Judge a flight from its tracks alone, with all obstacles known.
+def score(flown: Flown, energy: Energy | None = None) -> Score:
+    """Judge a flight from its tracks alone, with all obstacles known; the battery is as the plant tells.
 
     Notes
     -----
@@ -98,6 +108,8 @@ def score(flown: Flown) -> Score:
     duration = figures["flight_time_s"]
     summary = {
         **figures,
+        "state_of_charge": None if energy is None else round(energy.state_of_charge, 4),
+        "reserve_used": None if energy is None else energy.reserve_used,
         "wall_s": round(wall, 3),
         "real_time_factor": round(duration / wall, 1) if wall > 0.0 else None,
         "seed": flown.seed,
