@@ -107,8 +107,8 @@ def fly(
     from scenarios.check import wind_problems  # noqa: PLC0415
     from scenarios.errors import ScenarioError  # noqa: PLC0415
     from scenarios.load import load  # noqa: PLC0415
-    from scenarios.record import check_target, free_directory  # noqa: PLC0415
     from scenarios.scenario import FIDELITIES, Wind  # noqa: PLC0415
+    from scenarios.target import check_target, free_directory  # noqa: PLC0415
 
     with _errors():
         if preset is not None:

@@ -52,5 +52,8 @@ class RunDirectoryError(Exception):
 
 
 def _brief(value: object) -> str:
-    text = str(value) if isinstance(value, float) else repr(value)
+    try:
+        text = str(value) if isinstance(value, float) else repr(value)
+    except (RecursionError, ValueError):  # nested too deeply, or thousands of digits
+        return "..."
     return text if len(text) <= 60 else text[:57] + "..."

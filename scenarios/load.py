@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+import bisect
 import difflib
 import math
+import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from datetime import UTC
+from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
-from offboard.frames import MapFrame
 from scenarios import explain
 from scenarios.check import semantic_problems
 from scenarios.errors import Problem, ScenarioError
 from scenarios.fence import FenceArea
+from scenarios.places import Places
 from scenarios.scenario import (
     Home,
     Member,
@@ -30,7 +33,7 @@ from scenarios.scenario import (
     VehicleSettings,
     Wind,
 )
-from scenarios.schema import FenceTable, MemberTable, PlaceTable, PositionTable, ScenarioTable
+from scenarios.schema import FenceTable, MemberTable, ScenarioTable
 
 CATALOGUE = Path(__file__).parent / "catalogue"
 DEFAULT_SCENARIO = "table4"
@@ -59,10 +62,13 @@ def find(source: str | Path) -> Path:
     if not looks_like_path and text in catalogue_names():
         return in_catalogue
     path = Path(text)
-    if path.is_file():
-        return path
-    if looks_like_path:
-        raise ScenarioError(text, "is a directory" if path.is_dir() else "no such file")
+    try:
+        if path.is_file():
+            return path
+        if looks_like_path:
+            raise ScenarioError(text, "is a directory" if path.is_dir() else "no such file")
+    except OSError as error:  # a name that is too long, a directory that may not be read
+        raise ScenarioError(text, f"cannot be read: {error.strerror}") from error
     names = catalogue_names()
     near = difflib.get_close_matches(text, names, n=1)
     hint = f"; did you mean {near[0]!r}?" if near else "."
@@ -82,7 +88,7 @@ def load(source: str | Path) -> Scenario:
     """
     path = find(source)
     try:
-        text = path.read_bytes().decode("utf-8")
+        text = path.read_bytes().decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise ScenarioError(path, f"not a text file in UTF-8 (byte {error.start})") from error
     except OSError as error:
@@ -100,9 +106,12 @@ def parse(text: str, file: str | Path = "scenario") -> Scenario:
     """
     try:
         raw = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except RecursionError as error:
+        message = f"not valid TOML: nested too deeply (at line {_line_too_deep(text)})"
+        raise ScenarioError(file, message) from error
+    except ValueError as error:  # TOMLDecodeError, or a whole number of thousands of digits
         raise ScenarioError(file, f"not valid TOML: {error}") from error
-    name = Path(file).stem
+    name = _name_of(file)
     table, problems = _validate(raw)
     scenario = None
     if table is not None:
@@ -111,6 +120,28 @@ def parse(text: str, file: str | Path = "scenario") -> Scenario:
     if problems or scenario is None:
         raise ScenarioError(file, problems)
     return scenario
+
+
+def _line_too_deep(text: str) -> int:
+    """Line at which the parser gives up, counted from 1."""
+    lines = text.split("\n")
+    counts = range(1, len(lines))
+    return 1 + bisect.bisect_left(counts, True, key=lambda count: _too_deep("\n".join(lines[:count])))
+
+
+def _too_deep(text: str) -> bool:
+    try:
+        tomllib.loads(text)
+    except RecursionError:
+        return True
+    except ValueError:
+        return False
+    return False
+
+
+def _name_of(file: str | Path) -> str:
+    """The name of a file as one of a scenario: a dash for what those may not hold."""
+    return re.sub(r"[^A-Za-z0-9._-]+", "-", Path(file).stem).lstrip("._-")[:64] or "scenario"
 
 
 def _validate(raw: dict[str, Any]) -> tuple[_Located | None, list[Problem]]:
@@ -151,49 +182,58 @@ class _Located:
 
 def _build(located: _Located, default_name: str) -> tuple[list[Problem], Scenario]:
     table = located.table
-    frame = MapFrame(table.home.latitude_deg, table.home.longitude_deg, table.home.altitude_m)
-    mission = _positions(frame, table.mission, DEFAULT_ALTITUDE)
+    places = Places(table.home)
+    mission = places.points(table.mission, DEFAULT_ALTITUDE, partial(located.key, "mission"))
     cruise = max(p.altitude for p in mission)
-    obstacles = _positions(frame, table.obstacles, cruise)
-    traffic = [_positions(frame, flight.waypoints, cruise) for flight in table.traffic]
-    missions = [_own_mission(frame, member, mission) for member in table.vehicles]
+    obstacles = places.points(table.obstacles, cruise, partial(located.key, "obstacles"))
+    traffic = [
+        places.points(flight.waypoints, cruise, partial(_entry, located.key("traffic", index, "waypoints")))
+        for index, flight in enumerate(table.traffic)
+    ]
+    missions = [
+        _own_mission(places, member, mission, partial(_entry, located.key("vehicles", index, "mission")))
+        for index, member in enumerate(table.vehicles)
+    ]
+    geofence = tuple(
+        _area(places, area, located.key("geofence", index)) for index, area in enumerate(table.geofence)
+    )
+    problems = list(places.problems)
+    if _utc(table.start_time_utc) is None:
+        message = "must lie within the years 1 to 9999 in UTC"
+        problems.append(Problem("start_time_utc", str(table.start_time_utc), message))
     scenario = _assemble(table, default_name, mission, obstacles, traffic, missions)
-    scenario = replace(scenario, geofence=tuple(_area(frame, area) for area in table.geofence))
-    return semantic_problems(scenario, table, located.key), scenario
+    scenario = replace(scenario, geofence=geofence)
+    return problems + semantic_problems(scenario, table, located.key), scenario
 
 
-def _positions(frame: MapFrame, tables: Sequence[PositionTable], altitude: float) -> list[Point]:
-    """Map points; `altitude` [m] is for those that give none."""
-    points = []
-    for table in tables:
-        north, east = _place(frame, table)
-        height = altitude if table.altitude_m is None else table.altitude_m
-        points.append(Point(north, east, height, getattr(table, "speed_m_s", None)))
-    return points
+def _entry(name: str, index: int) -> str:
+    return f"{name} #{index + 1}"
 
 
-def _area(frame: MapFrame, table: FenceTable) -> FenceArea:
+def _utc(time: datetime) -> datetime | None:
+    """The same instant in UTC; None if that is before the year 1 or after 9999."""
+    try:
+        return time.astimezone(UTC)
+    except OverflowError:
+        return None
+
+
+def _area(places: Places, table: FenceTable, key: str) -> FenceArea:
     """One area of the geofence."""
     include = table.type == "include"
     if table.centre is not None and table.radius_m is not None:
-        return FenceArea(include, centre=_place(frame, table.centre), radius=table.radius_m)
-    return FenceArea(include, corners=tuple(_place(frame, corner) for corner in table.polygon or ()))
+        centre = places.place(table.centre, f"{key}, centre")
+        return FenceArea(include, centre=centre, radius=table.radius_m)
+    corners = tuple(places.place(corner, f"{key}, polygon") for corner in table.polygon or ())
+    return FenceArea(include, corners=corners)
 
 
-def _place(frame: MapFrame, table: PlaceTable) -> tuple[float, float]:
-    """North and east of home [m]."""
-    if table.latitude_deg is not None and table.longitude_deg is not None:
-        north, east = frame.to_map(table.latitude_deg, table.longitude_deg)
-        return float(north), float(east)
-    if table.north_m is None or table.east_m is None:
-        raise ValueError("a position table without a position was not validated")
-    return table.north_m, table.east_m
-
-
-def _own_mission(frame: MapFrame, member: MemberTable, common: Sequence[Point]) -> list[Point]:
+def _own_mission(
+    places: Places, member: MemberTable, common: Sequence[Point], key: Callable[[int], str]
+) -> list[Point]:
     """The mission of one of several vehicles: its own, or the common one moved aside."""
     if member.mission is not None:
-        return _positions(frame, member.mission, DEFAULT_ALTITUDE)
+        return places.points(member.mission, DEFAULT_ALTITUDE, key)
     north, east = member.north_offset_m, member.east_offset_m
     return [replace(point, north=point.north + north, east=point.east + east) for point in common]
 
@@ -213,7 +253,7 @@ def _assemble(
     return Scenario(
         name=table.name or default_name,
         description=table.description,
-        start_time_utc=table.start_time_utc.astimezone(UTC),
+        start_time_utc=_utc(table.start_time_utc) or table.start_time_utc,
         home=Home(table.home.latitude_deg, table.home.longitude_deg, table.home.altitude_m),
         mission=tuple(mission),
         obstacles=tuple(

@@ -21,47 +21,11 @@ from offboard.plan_files import PlanFile, write_plan
 from scenarios.errors import RunDirectoryError
 from scenarios.fence import geofence_data
 from scenarios.flown import Flown, LoggedDecision
-from scenarios.scenario import OWN, Obstacle, Scenario
+from scenarios.scenario import OWN, Obstacle
 from scenarios.score import Score
+from scenarios.target import PREFIX, check_target, followed
 from scenarios.toml_text import to_toml
 from scenarios.track import MovingTrack, Track
-
-MARKS_OF_A_RUN = ("summary.json", "track.csv", "scenario.toml")
-"""A directory with these files is a previous run and may be replaced."""
-
-
-def check_target(directory: Path) -> None:
-    """Make sure, before the flight, that a run can be written to a directory.
-
-    Raises
-    ------
-    RunDirectoryError
-        If it is a file, holds something that is not a run, or cannot be created there.
-    """
-    if directory.is_dir():
-        if any(directory.iterdir()) and not is_run(directory):
-            raise RunDirectoryError(directory, "is not empty and holds no previous run; it is left alone")
-    elif directory.exists():
-        raise RunDirectoryError(directory, "is a file")
-    parent = _existing_parent(directory)
-    try:
-        with tempfile.TemporaryFile(dir=parent):
-            pass
-    except OSError as error:
-        raise RunDirectoryError(parent, f"cannot be written to ({error.strerror})") from error
-
-
-def is_run(directory: Path) -> bool:
-    """True if a directory holds a run."""
-    return all((directory / name).is_file() for name in MARKS_OF_A_RUN)
-
-
-def free_directory(scenario: Scenario, seed: int, base: Path = Path("sidestep-runs")) -> Path:
-    """A directory that does not exist yet: `sidestep-runs/<scenario>-<seed>-<number>`."""
-    number = 1
-    while (directory := base / f"{scenario.name}-{seed}-{number}").exists():
-        number += 1
-    return directory
 
 
 def write_run(
@@ -84,16 +48,16 @@ def write_run(
         If it cannot be written; nothing is left behind then.
     """
     check_target(directory)
-    directory = directory.absolute()
+    target = followed(directory)
     try:
-        directory.parent.mkdir(parents=True, exist_ok=True)
-        temporary = Path(tempfile.mkdtemp(prefix=f".{directory.name}-", dir=directory.parent))
+        target.parent.mkdir(parents=True, exist_ok=True)
+        temporary = Path(tempfile.mkdtemp(prefix=PREFIX, dir=target.parent))
         try:
             _write_files(temporary, flown, score)
             if report is not None:
                 report(temporary)
             temporary.chmod(0o755)
-            _take_place(temporary, directory)
+            _take_place(temporary, target)
         finally:
             shutil.rmtree(temporary, ignore_errors=True)
     except OSError as error:
@@ -105,7 +69,7 @@ def _take_place(temporary: Path, directory: Path) -> None:
     if not directory.exists():
         temporary.rename(directory)
         return
-    aside = Path(tempfile.mkdtemp(prefix=f".{directory.name}-old-", dir=directory.parent))
+    aside = Path(tempfile.mkdtemp(prefix=f"{PREFIX}old-", dir=directory.parent))
     directory.rename(aside / "run")
     try:
         temporary.rename(directory)
@@ -114,13 +78,6 @@ def _take_place(temporary: Path, directory: Path) -> None:
         raise
     finally:
         shutil.rmtree(aside, ignore_errors=True)
-
-
-def _existing_parent(directory: Path) -> Path:
-    parent = directory.absolute().parent
-    while not parent.exists():
-        parent = parent.parent
-    return parent
 
 
 def _write_files(directory: Path, flown: Flown, score: Score) -> None:

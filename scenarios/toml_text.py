@@ -136,7 +136,7 @@ def _value(value: object) -> str:
     if isinstance(value, _Bare):
         return str(value)
     if isinstance(value, str):
-        return json.dumps(value)
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, float):
         return repr(value)
     if isinstance(value, Mapping):

@@ -19,7 +19,7 @@ def after(hours, begin):
     """Energy after some hours of straight flight from a time (UTC) on; home is at 76.6 degrees east."""
     scenario = replace(parse(ENCOUNTER), start_time_utc=begin)
     with Hangar(scenario, preset("default")) as hangar:
-        vehicle = hangar.own_vehicle()
+        vehicle = hangar.own_vehicle(scenario.mission)
         for _ in range(hours):
             vehicle.plant.step(3600.0)
         return hangar.energy()

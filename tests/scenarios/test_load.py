@@ -64,7 +64,7 @@ def test_catalogue_loads_describes_itself_and_survives_writing(name: str):
 def test_everything_survives_writing():
     text = """
     name = "all"
-    description = 'quotes " and \\ and ü'
+    description = "quotes \\" and \\\\ and ü and 😀 and \\u007f"
     start_time_utc = 2021-06-01T12:00:00+02:00
     time_limit_s = 5000.0
     obstacles = [{id = 7, latitude_deg = 14.45, longitude_deg = 76.6, kind = "mast", appears_at_s = 30.0}]
@@ -116,6 +116,28 @@ def test_obstacles_without_altitude_stand_at_the_mission_s():
         ("name = 'a b'", "name = 'a b'"),
         ("time_limit_s = inf", "time_limit_s = inf"),
         ("start_time_utc = 2020-03-21T02:30:00", "offset"),
+        (
+            "start_time_utc = 0001-01-01T00:00:00+05:00",
+            "start_time_utc = '0001-01-01 00:00:00+05:00': must lie within the years 1 to 9999 in UTC",
+        ),
+        ("start_time_utc = 9999-12-31T23:00:00-05:00", "must lie within the years 1 to 9999 in UTC"),
+        (
+            "obstacles = [{latitude_deg = 23.5, longitude_deg = 76.6}]",
+            "obstacles #1: latitude_deg = 23.5, longitude_deg = 76.6 is beyond the map, which reaches 1,",
+        ),
+        (
+            "obstacles = [{latitude_deg = -14.39, longitude_deg = -103.4}]",
+            "obstacles #1: latitude_deg = -14.39",
+        ),
+        (
+            "traffic = [{waypoints = [{north_m = 1, east_m = 0}, {latitude_deg = 80, longitude_deg = 0}]}]",
+            "traffic #1, waypoints #2: latitude_deg = 80",
+        ),
+        ("a = 1\nb = " + "[" * 1500 + "]" * 1500, "not valid TOML: nested too deeply (at line 2)"),
+        ("a" + ".a" * 3000 + " = 1", "a = ...: unknown key"),
+        ("a = " + "9" * 5000, "not valid TOML"),
+        ("a = 0x" + "f" * 5000, "a = ...: unknown key"),
+        ("time_limit_s = " + "9" * 400, "time_limit_s"),
         ("start_time_utc = 'now'", "must be a date and time with offset"),
         ("random = {sigma_m = 1.0}", "random.sigma_m = 1.0: must be at least 500"),
         ("obstacles = [{north_m = 1.0}]", "obstacles #1: needs north_m and east_m"),
@@ -184,6 +206,34 @@ def test_unknown_names_and_missing_files(tmp_path):
     (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(ScenarioError, match="not a text file"):
         load(tmp_path / "binary.toml")
+    with pytest.raises(ScenarioError, match=r"cannot be read|no such file"):
+        load(tmp_path / ("x" * 300 + ".toml"))
+    with pytest.raises(ScenarioError, match=r"cannot be read|unknown scenario"):
+        load("x" * 300)
+
+
+def test_every_mistake_of_a_place_is_told_with_the_others():
+    far = "obstacles = [{latitude_deg = 80, longitude_deg = 0}, {north_m = 900, east_m = 0}]\n"
+    text = complaints("start_time_utc = 0001-01-01T00:00:00+05:00\n" + far + MISSION)
+    assert "3 mistakes" in text
+    assert "obstacles #1: latitude_deg = 80" in text
+    assert "obstacles #2, safety_radius_m = 1000.0: the start is inside" in text
+
+
+def test_a_byte_order_mark_does_no_harm(tmp_path):
+    (tmp_path / "windows.toml").write_text(MISSION, encoding="utf-8-sig")
+    assert load(tmp_path / "windows.toml").name == "windows"
+
+
+@pytest.mark.parametrize(
+    ("stem", "name"),
+    [("my flight ü", "my-flight-"), ("_draft", "draft"), ("ü", "scenario"), ("x" * 200, "x" * 64)],
+)
+def test_a_name_made_of_the_file_s_can_be_written(tmp_path, stem: str, name: str):
+    (tmp_path / f"{stem}.toml").write_text(MISSION)
+    scenario = load(tmp_path / f"{stem}.toml")
+    assert scenario.name == name
+    assert parse(to_toml(scenario)) == scenario
 
 
 def test_a_file_may_be_named_like_anything(tmp_path):

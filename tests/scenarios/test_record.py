@@ -13,7 +13,7 @@ import pytest
 from offboard.plan_files import read_plan
 from scenarios.errors import RunDirectoryError
 from scenarios.load import load
-from scenarios.record import check_target, free_directory, is_run, write_run
+from scenarios.record import write_run
 from scenarios.recorded import differences, read_run
 from scenarios.replay import timeline
 from tests.scenarios.flights import encounter
@@ -24,9 +24,9 @@ SUMMARY_KEYS = [
     *(
         "waypoints_replaced",
         "replans",
+        "decision_ms",
         "state_of_charge",
         "reserve_used",
-        "decision_ms",
         "wall_s",
         "real_time_factor",
     ),
@@ -177,22 +177,6 @@ def test_replay_tells_the_flight_in_order(run_directory):
     assert any(text.startswith("closest to obstacle 1") for text in texts)
 
 
-def test_a_previous_run_is_replaced_and_nothing_else_is(run_directory, tmp_path):
-    write_run(tmp_path / "run", *encounter())
-    (tmp_path / "run" / "extra.txt").write_text("old")
-    write_run(tmp_path / "run", *encounter())
-    assert is_run(tmp_path / "run")
-    assert not (tmp_path / "run" / "extra.txt").exists()
-    other = tmp_path / "precious"
-    other.mkdir()
-    (other / "thesis.tex").write_text("...")
-    with pytest.raises(RunDirectoryError, match="holds no previous run"):
-        write_run(other, *encounter())
-    assert [p.name for p in other.iterdir()] == ["thesis.tex"]
-    with pytest.raises(RunDirectoryError, match="is a file"):
-        check_target(other / "thesis.tex")
-
-
 def test_a_failure_leaves_nothing_behind(tmp_path):
     def fail(directory):
         assert (directory / "track.csv").is_file()
@@ -201,11 +185,3 @@ def test_a_failure_leaves_nothing_behind(tmp_path):
     with pytest.raises(RunDirectoryError, match="the report failed"):
         write_run(tmp_path / "deep" / "run", *encounter(), fail)
     assert list((tmp_path / "deep").iterdir()) == []
-
-
-def test_free_directories_are_numbered(tmp_path):
-    scenario = load("single")
-    first = free_directory(scenario, 3, tmp_path)
-    assert first.name == "single-3-1"
-    first.mkdir()
-    assert free_directory(scenario, 3, tmp_path).name == "single-3-2"
