@@ -119,7 +119,7 @@ def test_no_sampled_point_is_nearer_than_the_separation(points, data):
 @given(st.integers(0, 2**32 - 1), st.integers(2, 700))
 def test_leaving_out_far_pieces_changes_nothing(seed, samples):
     rng = np.random.default_rng(seed)
-    steps = rng.normal(0.0, 60.0, (samples, 3)) + (5.0, 0.0, 0.0)
+    steps = rng.normal(0.0, 60.0, (samples, 3)) + np.array((5.0, 0.0, 0.0))
     positions = np.cumsum(steps, axis=0)
     still = np.zeros(samples)
     track = Track("own", np.arange(float(samples)), positions, still, still, still)
