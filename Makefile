@@ -41,7 +41,7 @@ lint: $(VENV)/.tests
 	$(BIN)/mypy --strict
 	$(BIN)/lint-imports
 
-bench: $(VENV)/.tests
+bench: $(VENV)/.bench
 	@for script in benchmarks/bench_*.py; do echo "## $$script"; $(BIN)/python "$$script" $(ARGS) || exit 1; done
 
 picture:
@@ -70,6 +70,10 @@ $(VENV)/.tests: $(SOURCES) $(AGAIN) | $(BIN)/python
 	@echo "Installing Sidestep and its test tools into $(VENV) (the first time takes a minute or two) ..."
 	@$(call install,-e '.[dev]')
 	@touch $@ $(VENV)/.flies
+
+$(VENV)/.bench: $(VENV)/.tests
+	@$(call install,-e '.[bench]')
+	@touch $@
 
 ifeq ($(UV),)
 install = $(BIN)/python -m pip install --quiet --disable-pip-version-check $(1)

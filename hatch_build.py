@@ -11,9 +11,11 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 
 class FmuBuildHook(BuildHookInterface[Any]):
-    """Compiles and packs the FMU for wheels; an editable install gets it in the source tree.
+    """Compiles and packs the FMUs for wheels; an editable install gets them in the source tree.
 
-    The machine's own C compiler is used; only where there is none, ziglang is asked for (it is large).
+    The machine's own C compiler is used; only where there is none, ziglang is asked for (it is large). The
+    wheel is tagged for this platform then. Where `python -m fmu.build --all` has left files with the
+    libraries of all platforms in the source tree, the wheel takes those and is tagged `py3-none-any`.
     """
 
     PLUGIN_NAME = "custom"
@@ -23,18 +25,23 @@ class FmuBuildHook(BuildHookInterface[Any]):
         return [] if self.target_name != "wheel" or self._build.find_compiler() else ["ziglang>=0.13"]
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
-        """Build the FMU and tag the wheel for this platform, since it carries a native library."""
+        """Build the FMUs, or take those of all platforms, and tag the wheel for what they run on."""
         if self.target_name != "wheel":
             return
-        if version == "editable":
-            fmu = self._build.build_fmu()
+        build = self._build
+        everywhere = version != "editable" and build.carries_all()
+        if everywhere:
+            files = (build.PACKAGED, build.PACKAGED_FMI2)
+        elif version == "editable":
+            files = build.build_fmus()
         else:
             self._folder = tempfile.TemporaryDirectory(prefix="sidestep-build-")
-            fmu = self._build.build_fmu(Path(self._folder.name) / self._build.PACKAGED.name)
-            build_data["force_include"][str(fmu)] = f"fmu/{fmu.name}"
-        build_data["pure_python"] = False
-        build_data["tag"] = f"py3-none-{_platform_tag()}"
-        self.app.display_info(f"built {fmu}")
+            files = build.build_fmus(Path(self._folder.name) / build.PACKAGED.name)
+        if version != "editable":
+            build_data["force_include"].update({str(file): f"fmu/{file.name}" for file in files})
+        build_data["pure_python"] = everywhere
+        build_data["tag"] = "py3-none-any" if everywhere else f"py3-none-{_platform_tag()}"
+        self.app.display_info(f"built {files[0]} and {files[1].name}")
 
     def finalize(self, *_arguments: object) -> None:
         """Remove what was built beside the source tree."""

@@ -4,6 +4,7 @@ from fmu.errors import AircraftError, BuildError, FmuError, PlantError
 from fmu.library import FmuLibrary
 from fmu.parameters import aircraft_names, load_aircraft
 from fmu.plant import FmuPlant
+from fmu.saving import SavedPlant
 from fmu.types import PlantLimits, PlantState
 
 __all__ = [
@@ -15,6 +16,7 @@ __all__ = [
     "PlantError",
     "PlantLimits",
     "PlantState",
+    "SavedPlant",
     "aircraft_names",
     "load_aircraft",
 ]

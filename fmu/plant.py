@@ -9,6 +9,7 @@ from typing import Literal
 
 from fmu.library import Channel, FmuLibrary
 from fmu.parameters import DEFAULT
+from fmu.saving import SavedPlant
 from fmu.types import PlantLimits, PlantState
 
 Fidelity = Literal["6dof", "kinematic"]
@@ -97,7 +98,7 @@ class FmuPlant:
             "initial.airspeed": airspeed,
         }
         ahead = (north + 1e3 * math.cos(heading), east + 1e3 * math.sin(heading))
-        self._values |= zip(_LEG + _HOLD, (north, east, *ahead, altitude, airspeed), strict=True)
+        self._values |= zip(_LEG + _HOLD, (north, east, *ahead, altitude, max(airspeed, 1.0)), strict=True)
         self._values |= zip(_WIND, wind, strict=True)
         self._values |= {"command.mode": LEG} | dict(parameters or {})
         self._instance = library.instantiate(name)
@@ -221,6 +222,24 @@ class FmuPlant:
     def reset(self) -> None:
         """Back to the start, with what was set before the first step and the commands given since."""
         self._restart({})
+
+    def save(self) -> SavedPlant:
+        """This moment of the flight, to go back to it or to fly on from it with another plant of the FMU."""
+        saved = self._instance.save()
+        return SavedPlant(saved.model, saved.nanoseconds, self._command, dict(self._values))
+
+    def restore(self, saved: SavedPlant) -> None:
+        """Go on from a saved moment, bit for bit.
+
+        Raises
+        ------
+        ValueError
+            If it was not saved by this FMU, or is damaged.
+        """
+        self._instance.restore(saved)
+        self._command = saved.command
+        self._values = dict(saved.values)
+        self._state = None
 
     def close(self) -> None:
         """Free the instance; a second call does nothing."""

@@ -33,7 +33,13 @@ class Unit:
     display: str | None = None
     """Name of the display unit, if there is one."""
     factor: float = 1.0
-    """Display value = factor × value."""
+    """Display value = factor × value + offset."""
+    offset: float = 0.0
+    """See `factor`."""
+    nominal: float = 1.0
+    """A usual size of what has this unit."""
+    limit: float = 1e12
+    """Bound of outputs in this unit; a state beyond it has diverged."""
 
 
 UNITS: dict[str, Unit] = {
@@ -41,15 +47,23 @@ UNITS: dict[str, Unit] = {
     for unit in (
         Unit("1"),
         Unit("s", (("s", 1),)),
-        Unit("m", (("m", 1),)),
+        Unit("m", (("m", 1),), nominal=100.0),
         Unit("m2", (("m", 2),)),
-        Unit("m/s", (("m", 1), ("s", -1))),
-        Unit("m/s2", (("m", 1), ("s", -2))),
+        Unit("m/s", (("m", 1), ("s", -1)), nominal=10.0),
+        Unit("m/s2", (("m", 1), ("s", -2)), nominal=10.0),
         Unit("kg", (("kg", 1),)),
         Unit("kg.m2", (("kg", 1), ("m", 2))),
         Unit("kg/m3", (("kg", 1), ("m", -3))),
-        Unit("N", (("kg", 1), ("m", 1), ("s", -2))),
+        Unit("N", (("kg", 1), ("m", 1), ("s", -2)), nominal=10.0),
+        Unit("Pa", (("kg", 1), ("m", -1), ("s", -2)), "hPa", 0.01, nominal=1e3),
+        Unit("K", (("K", 1),), "degC", 1.0, -273.15, nominal=300.0),
+        Unit("1/K", (("K", -1),)),
+        Unit("W", (("kg", 1), ("m", 2), ("s", -3)), nominal=100.0),
+        Unit("W/m2", (("kg", 1), ("s", -3)), nominal=1e3),
+        Unit("J", (("kg", 1), ("m", 2), ("s", -2)), "Wh", 1.0 / 3600.0, nominal=1e5),
         Unit("1/s", (("s", -1),)),
+        Unit("1/s2", (("s", -2),)),
+        Unit("1/m", (("m", -1),)),
         Unit("rad", (("rad", 1),), "deg", 180.0 / math.pi),
         Unit("rad/s", (("rad", 1), ("s", -1)), "deg/s", 180.0 / math.pi),
         Unit("rad/s2", (("rad", 1), ("s", -2)), "deg/s2", 180.0 / math.pi),
@@ -84,6 +98,17 @@ class Variable:
         return self.name.replace(".", "_")
 
     @property
+    def bounds(self) -> tuple[float, float]:
+        """Smallest and largest value; those of the unit where the row gives none."""
+        limit = UNITS[self.unit].limit
+        return max(self.minimum, -limit), min(self.maximum, limit)
+
+    @property
+    def nominal(self) -> float:
+        """A usual size."""
+        return UNITS[self.unit].nominal
+
+    @property
     def variability(self) -> str:
         """FMI variability that follows from causality and type."""
         if self.causality == "parameter":
@@ -109,8 +134,10 @@ def _input(
     return Variable(name, "input", unit, text, start, *bounds, kind)
 
 
-def _output(name: str, unit: str, text: str, *, kind: Kind = "Float64") -> Variable:
-    return Variable(name, "output", unit, text, kind=kind)
+def _output(
+    name: str, unit: str, text: str, bounds: tuple[float, float] = (-INF, INF), *, kind: Kind = "Float64"
+) -> Variable:
+    return Variable(name, "output", unit, text, None, *bounds, kind)
 
 
 def _derivatives() -> tuple[Variable, ...]:
@@ -148,10 +175,10 @@ _AIRCRAFT: tuple[Variable, ...] = (
     _parameter("aircraft.wing.span", "m", "Reference span", bounds=(1e-3, 200.0)),
     _parameter("aircraft.wing.chord", "m", "Reference chord", bounds=(1e-3, 50.0)),
     _parameter(
-        "aircraft.aero.alpha_min", "rad", "Angle of attack below which lift is held", bounds=(-1.5, 0.0)
+        "aircraft.aero.alpha_min", "rad", "Angle of attack below which lift is held", bounds=(-3.2, 0.0)
     ),
     _parameter(
-        "aircraft.aero.alpha_max", "rad", "Angle of attack beyond which lift is held", bounds=(0.0, 1.5)
+        "aircraft.aero.alpha_max", "rad", "Angle of attack beyond which lift is held", bounds=(0.0, 3.2)
     ),
     *_derivatives(),
     _parameter(
@@ -165,6 +192,13 @@ _AIRCRAFT: tuple[Variable, ...] = (
     _parameter("aircraft.propulsion.coefficient", "1", "Efficiency of the disc", bounds=(0.0, 10.0)),
     _parameter("aircraft.propulsion.motor_speed", "m/s", "Slipstream at full throttle", bounds=(0.0, 1e3)),
     _parameter("aircraft.propulsion.max_thrust", "N", "Full thrust of the linear model", bounds=(0.0, 1e6)),
+    _parameter(
+        "aircraft.actuator.elevons",
+        "1",
+        "True: two elevons are aileron and elevator at once; aileron_limit is that of each of them",
+        bounds=(0, 1),
+        kind="Boolean",
+    ),
     _parameter("aircraft.actuator.aileron_limit", "rad", "Largest aileron", bounds=(0.0, 1.5)),
     _parameter("aircraft.actuator.elevator_limit", "rad", "Largest elevator", bounds=(0.0, 1.5)),
     _parameter("aircraft.actuator.rudder_limit", "rad", "Largest rudder; 0: none fitted", bounds=(0.0, 1.5)),
@@ -228,6 +262,23 @@ _AIRCRAFT: tuple[Variable, ...] = (
         "Airspeed lag of the kinematic fidelity",
         bounds=(0.05, 100.0),
     ),
+    _parameter("aircraft.solar.area", "m2", "Area of the solar cells; 0: none", bounds=(0.0, 1e3)),
+    _parameter("aircraft.solar.efficiency", "1", "Efficiency of the cells at 25 degC", bounds=(0.0, 1.0)),
+    _parameter("aircraft.solar.chain_efficiency", "1", "Camber and tracker of the array", bounds=(0.0, 1.0)),
+    _parameter(
+        "aircraft.solar.temperature_coefficient", "1/K", "Loss of the cells by warmth", bounds=(0.0, 0.02)
+    ),
+    _parameter("aircraft.battery.capacity", "J", "Energy of the full battery; 0: none", bounds=(0.0, 1e10)),
+    _parameter("aircraft.battery.reserve", "1", "Share that a flight is not to use", bounds=(0.0, 1.0)),
+    _parameter("aircraft.battery.charge_efficiency", "1", "Stored over supplied", bounds=(0.1, 1.0)),
+    _parameter("aircraft.battery.discharge_efficiency", "1", "Delivered over drawn", bounds=(0.1, 1.0)),
+    _parameter(
+        "aircraft.power.chain_efficiency",
+        "1",
+        "Thrust times airspeed over electric power",
+        bounds=(0.01, 1.0),
+    ),
+    _parameter("aircraft.power.avionics", "W", "Power of everything but the motor", bounds=(0.0, 1e5)),
 )
 
 _SETTINGS: tuple[Variable, ...] = (
@@ -241,10 +292,45 @@ _SETTINGS: tuple[Variable, ...] = (
     _parameter(
         "environment.gravity",
         "m/s2",
-        "Acceleration of gravity (9.81 as the paper has it)",
+        "Acceleration of gravity at mean sea level (9.81 as the paper has it)",
         9.81,
         (0.0, 100.0),
     ),
+    _parameter("environment.gravity_gradient", "1/s2", "Loss of gravity per height", 3.086e-6, (0.0, 1e-3)),
+    _parameter(
+        "environment.earth_rate", "rad/s", "Rotation of the earth (7.292115e-5); 0: none", 0.0, (0.0, 1e-3)
+    ),
+    _parameter(
+        "environment.earth_curvature", "1/m", "Inverse radius of the earth; 0: flat", 0.0, (0.0, 1e-5)
+    ),
+    _parameter("environment.latitude", "rad", "Latitude of home", math.radians(47.37), (-1.58, 1.58)),
+    _parameter("environment.longitude", "rad", "Longitude of home", math.radians(8.55), (-6.3, 6.3)),
+    _parameter(
+        "environment.start_time",
+        "s",
+        "When the run starts, in Unix time (UTC); default 2025-06-21 08:00",
+        1750492800.0,
+        (-1e10, 1e10),
+    ),
+    _parameter("environment.clearness", "1", "Share of a clear day's sunlight", 1.0, (0.0, 1.0)),
+    _parameter(
+        "turbulence.wind_speed", "m/s", "Wind 20 ft above ground that makes the turbulence", 0.0, (0.0, 50.0)
+    ),
+    _parameter("turbulence.seed", "1", "Seed of the turbulence", 1, (-2147483648, 2147483647), kind="Int32"),
+    _parameter("ground.present", "1", "True: a descent to the ground ends there", 1, (0, 1), kind="Boolean"),
+    _parameter("ground.elevation", "m", "Height of the ground above home", 0.0, (-1000.0, 10000.0)),
+    _parameter("launch.mode", "1", "0: starts in the air, 1: catapult, 2: runway", 0, (0, 2), kind="Int32"),
+    _parameter(
+        "launch.speed",
+        "m/s",
+        "Catapult: speed over ground at its end; runway: airspeed at which it lifts off",
+        14.0,
+        (1.0, 100.0),
+    ),
+    _parameter("launch.length", "m", "Length of the catapult", 4.0, (0.1, 100.0)),
+    _parameter("launch.pitch", "rad", "Pitch of catapult or standing aircraft", 0.15, (-0.2, 0.7)),
+    _parameter("launch.friction", "1", "Rolling friction on the runway", 0.04, (0.0, 1.0)),
+    _parameter("initial.charge", "1", "State of charge of the battery at the start", 1.0, (0.0, 1.0)),
     _parameter(
         "environment.home_elevation", "m", "Elevation of home above mean sea level", 0.0, (-500.0, 9000.0)
     ),
@@ -301,6 +387,7 @@ _INPUTS: tuple[Variable, ...] = (
     ),
     _input("command.rudder", "rad", "Rudder in direct mode", 0.0, (-1.5, 1.5)),
     _input("command.throttle", "1", "Throttle in direct mode", 0.0, (0.0, 1.0)),
+    _input("command.launch", "1", "True: launch, if held on the ground", 0, (0, 1), kind="Boolean"),
     _input("wind.north", "m/s", "Velocity of the air over ground", 0.0, (-100.0, 100.0)),
     _input("wind.east", "m/s", "Velocity of the air over ground", 0.0, (-100.0, 100.0)),
     _input("wind.down", "m/s", "Velocity of the air over ground", 0.0, (-100.0, 100.0)),
@@ -346,16 +433,43 @@ _OUTPUTS: tuple[Variable, ...] = (
     _output("rate.p", "rad/s2", "Time derivative of state.p"),
     _output("rate.q", "rad/s2", "Time derivative of state.q"),
     _output("rate.r", "rad/s2", "Time derivative of state.r"),
+    _output("rate.aileron", "rad/s", "Time derivative of state.aileron"),
+    _output("rate.elevator", "rad/s", "Time derivative of state.elevator"),
+    _output("rate.rudder", "rad/s", "Time derivative of state.rudder"),
+    _output("rate.throttle", "1/s", "Time derivative of state.throttle"),
+    _output("state.elevon_left", "rad", "Left elevon, trailing edge down positive: elevator + aileron"),
+    _output("state.elevon_right", "rad", "Right elevon, trailing edge down positive: elevator - aileron"),
     _output("sensor.specific_force.x", "m/s2", "What an accelerometer reads, body forward"),
     _output("sensor.specific_force.y", "m/s2", "What an accelerometer reads, body right"),
     _output("sensor.specific_force.z", "m/s2", "What an accelerometer reads, body down"),
     _output("sensor.load_factor", "1", "Specific force along body up over gravity"),
+    _output("sensor.static_pressure", "Pa", "Static pressure"),
+    _output("sensor.differential_pressure", "Pa", "Pitot less static pressure"),
+    _output("sensor.temperature", "K", "Temperature of the air"),
+    _output("air.gust_north", "m/s", "Turbulence, over the steady wind"),
+    _output("air.gust_east", "m/s", "Turbulence, over the steady wind"),
+    _output("air.gust_down", "m/s", "Turbulence, over the steady wind"),
     _output("air.density", "kg/m3", "Density of the US Standard Atmosphere 1976"),
     _output("engine.thrust", "N", "Thrust"),
     _output("guidance.cross_track", "m", "Right of the leg positive; outside the orbit positive"),
     _output("guidance.bank_command", "rad", "Bank asked for by the guidance"),
     _output("guidance.climb_command", "m/s", "Climb asked for by the guidance"),
     _output("state.stalled", "1", "Angle of attack is outside the range of the lift data", kind="Boolean"),
+    _output("flight.phase", "1", "0: held, 1: being launched, 2: flying, 3: landed", (0, 3), kind="Int32"),
+    _output("flight.contact_speed", "m/s", "Rate of descent at the contact with the ground"),
+    _output("battery.energy", "J", "Energy in the battery"),
+    _output("battery.state_of_charge", "1", "Energy over capacity"),
+    _output("battery.power_in", "W", "Power of the solar array"),
+    _output("battery.power_out", "W", "Power of motor and avionics"),
+    _output("battery.power_stored", "W", "Time derivative of battery.energy"),
+    _output("battery.on_reserve", "1", "The reserve has been touched", kind="Boolean"),
+    _output("battery.empty", "1", "The battery has been emptied; the motor is off", kind="Boolean"),
+    _output("sun.elevation", "rad", "Height of the sun above the horizon"),
+    _output("sun.azimuth", "rad", "Direction of the sun, clockwise from north"),
+    _output("sun.irradiance", "W/m2", "Sunlight on a level surface"),
+    _output("event.ground", "1", "Positive until the aircraft leaves or meets the ground"),
+    _output("event.launch", "1", "Positive until the launch is over"),
+    _output("event.battery", "1", "Positive until the battery is at its reserve, then until it is empty"),
 )
 
 TABLE: tuple[Variable, ...] = (
@@ -365,7 +479,22 @@ TABLE: tuple[Variable, ...] = (
     *_INPUTS,
     *_OUTPUTS,
 )
-"""All variables; the index is the value reference."""
+"""All scalar variables; the index is the value reference."""
 
 REFERENCE: dict[str, int] = {variable.name: index for index, variable in enumerate(TABLE)}
 """Value reference by name."""
+
+STATES: tuple[tuple[str, str], ...] = (
+    ("state.north", "state.velocity_north"),
+    ("state.east", "state.velocity_east"),
+    ("state.altitude", "state.climb_rate"),
+    *((f"state.{k}", f"rate.{k}") for k in "uvw"),
+    *((f"state.quaternion.{k}", f"rate.quaternion.{k}") for k in "wxyz"),
+    *((f"state.{k}", f"rate.{k}") for k in "pqr"),
+    *((f"state.{k}", f"rate.{k}") for k in ("aileron", "elevator", "rudder", "throttle")),
+    ("battery.energy", "battery.power_stored"),
+)
+"""Continuous states and their derivatives, in the order of the model's state vector."""
+
+INDICATORS: tuple[str, ...] = ("event.ground", "event.launch", "event.battery")
+"""Event indicators, in the model's order."""

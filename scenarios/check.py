@@ -81,7 +81,8 @@ def _start(scenario: Scenario, key: Key) -> list[Problem]:
     for index, obstacle in enumerate(scenario.obstacles):
         centre = Point(obstacle.north, obstacle.east, obstacle.altitude)
         distance = min(_apart(centre, member.mission[0]) for member in scenario.fleet)
-        if distance <= obstacle.safety_radius and obstacle.appears_at == 0.0:
+        at_once = obstacle.appears_at <= scenario.radar.period  # nobody can decide anything before
+        if distance <= obstacle.safety_radius and at_once:
             message = (
                 f"the start is inside its sphere: {distance:.0f} m from its centre, which must be more than "
                 f"its radius of {obstacle.safety_radius:g} m"

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scenarios import __version__
+from scenarios import __version__, fmu_commands
 
 if TYPE_CHECKING:
     from avoidance.parameters import Parameters
@@ -30,6 +30,7 @@ app = typer.Typer(
     rich_markup_mode=None,  # plain help: rich would double the time it takes
     add_completion=False,
 )
+app.add_typer(fmu_commands.app)
 
 
 def main() -> None:
@@ -238,7 +239,7 @@ def _fly_and_write(
                 if stop:
                     break
         flown = flight.result()
-    judged = score(flown)
+        judged = score(flown, hangar.energy())
     write_run(directory, flown, judged, write_report)
     if as_json:
         sys.stdout.write(summary_text(judged.summary))

@@ -1,7 +1,8 @@
 """Which waypoints could be reached, judged with full knowledge by code that shares nothing with the planner.
 
 A waypoint nearer to an obstacle than its radius + margin + room to turn cannot be flown to and turned away
-from safely: it is replaced by the nearest point that can, or by none.
+from safely: it is replaced by the nearest point that can, or by none. Spheres are cut where they are widest
+within the published altitude tolerance of the waypoint.
 """
 
 from __future__ import annotations
@@ -30,6 +31,8 @@ class ReplacementRule:
     """A waypoint with less room than this beyond the margin is replaced [m]."""
     rooms: tuple[float, ...]
     """Room of the replacement beyond the margin; the first that allows a point [m]."""
+    altitude_tolerance: float = 0.0
+    """The vehicle may be this much above or below a waypoint [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +73,7 @@ def goals(mission: Sequence[Point], obstacles: Sequence[Obstacle], rule: Replace
     found = [Goal(0, start.north, start.east, origin, 0.0)]
     for index, waypoint in enumerate(mission[1:], start=1):
         here = (waypoint.north, waypoint.east)
-        centres, radii = discs(obstacles, waypoint.altitude)
+        centres, radii = discs(obstacles, waypoint.altitude, rule.altitude_tolerance)
         walls = radii + rule.margin
         point: tuple[float, float] | None = None
         if (np.hypot(*(centres - here).T) >= walls + rule.needed - SLACK).all():
@@ -82,11 +85,18 @@ def goals(mission: Sequence[Point], obstacles: Sequence[Obstacle], rule: Replace
     return found
 
 
-def discs(obstacles: Sequence[Obstacle], altitude: float) -> tuple[Floats, Floats]:
-    """Spheres cut at an altitude [m]: centres, shape (n, 2), and radii, shape (n,), of those it meets."""
-    kept = [o for o in obstacles if abs(o.altitude - altitude) < o.safety_radius]
-    centres = np.array([(o.north, o.east) for o in kept], dtype=np.float64).reshape(-1, 2)
-    radii = [math.sqrt(o.safety_radius**2 - (o.altitude - altitude) ** 2) for o in kept]
+def discs(obstacles: Sequence[Obstacle], altitude: float, tolerance: float = 0.0) -> tuple[Floats, Floats]:
+    """Spheres cut where they are widest within `tolerance` of an altitude [m].
+
+    Returns
+    -------
+    centres, radii : array, shape (n, 2) and (n,)
+        Of the spheres that reach there [m].
+    """
+    heights = [(o, max(abs(o.altitude - altitude) - tolerance, 0.0)) for o in obstacles]
+    kept = [(o, height) for o, height in heights if height < o.safety_radius]
+    centres = np.array([(o.north, o.east) for o, _ in kept], dtype=np.float64).reshape(-1, 2)
+    radii = [math.sqrt(o.safety_radius**2 - height**2) for o, height in kept]
     return centres, np.array(radii, dtype=np.float64)
 
 
@@ -114,8 +124,9 @@ def nearest_reachable(
     Notes
     -----
     The nearest point of what discs leave free is the target, its foot on one circle, or a crossing of two.
+    Where the target is a centre every point of the circle is as near; its foot is then towards the start.
     """
-    for north, east in _candidates(np.asarray(target, dtype=np.float64), centres, safe):
+    for north, east in _candidates(np.asarray(target, dtype=np.float64), np.asarray(start), centres, safe):
         if not separated(start, (north, east), centres, walls):
             return north, east
     return None
@@ -154,20 +165,23 @@ def separated(a: tuple[float, float], b: tuple[float, float], centres: Floats, r
     return bool((np.abs(mismatch) > np.pi).any())
 
 
-def _candidates(target: Floats, centres: Floats, radii: Floats) -> Iterator[tuple[float, float]]:
+def _candidates(
+    target: Floats, start: Floats, centres: Floats, radii: Floats
+) -> Iterator[tuple[float, float]]:
     """Free points, nearest to the target first: itself, feet on circles, crossings of circles."""
-    points = np.concatenate((target[None, :], _feet(target, centres, radii), _crossings(centres, radii)))
+    points = np.concatenate(
+        (target[None, :], _feet(target, start, centres, radii), _crossings(centres, radii))
+    )
     free = (_distances(points, centres) >= radii[None, :] - SLACK).all(axis=1)
     points = points[free]
     away = np.hypot(points[:, 0] - target[0], points[:, 1] - target[1])
     yield from ((north, east) for north, east in points[np.argsort(away, kind="stable")].tolist())
 
 
-def _feet(target: Floats, centres: Floats, radii: Floats) -> Floats:
+def _feet(target: Floats, start: Floats, centres: Floats, radii: Floats) -> Floats:
     out = target - centres
-    away = np.hypot(out[:, 0], out[:, 1])
-    out[away == 0.0] = (1.0, 0.0)
-    return centres + out * (radii / np.where(away == 0.0, 1.0, away))[:, None]
+    out[(out == 0.0).all(axis=1)] = start - target if (start != target).any() else (1.0, 0.0)
+    return centres + out * (radii / np.hypot(out[:, 0], out[:, 1]))[:, None]
 
 
 def _crossings(centres: Floats, radii: Floats) -> Floats:

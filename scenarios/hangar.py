@@ -15,6 +15,7 @@ from offboard.simulated import SimulatedVehicle
 from scenarios.errors import ScenarioError
 from scenarios.movers import FlownMover, Mover, PointMover
 from scenarios.scenario import Fidelity, Point, Scenario, Traffic
+from scenarios.score import Energy
 
 if TYPE_CHECKING:
     from fmu.library import FmuLibrary
@@ -57,6 +58,7 @@ class Hangar:
         self._shared = library is not None
         self._library: FmuLibrary = FmuLibrary.open() if library is None else library
         self._plants: list[FmuPlant] = []
+        self._own: list[FmuPlant] = []
 
     def __enter__(self) -> Self:
         return self
@@ -78,12 +80,23 @@ class Hangar:
         """A vehicle under test, at the start of its mission."""
         settings = self._scenario.vehicle
         radius = settings.acceptance_radius or self._parameters.acceptance_radius
-        return self._vehicle(
+        vehicle = self._vehicle(
             mission,
             airspeed=settings.airspeed,
             fidelity=settings.fidelity,
             acceptance_radius=radius,
             heading=settings.heading,
+        )
+        self._own.append(self._plants[-1])
+        return vehicle
+
+    def energy(self) -> Energy:
+        """What is left in the battery; of several own vehicles the least."""
+        if not self._own:
+            raise ValueError("own_vehicle() has not been called")
+        return Energy(
+            min(plant.get("battery.state_of_charge") for plant in self._own),
+            any(bool(plant.get("battery.on_reserve")) for plant in self._own),
         )
 
     def traffic(self) -> list[Mover]:
@@ -126,6 +139,7 @@ class Hangar:
                 airspeed=airspeed,
                 home_elevation=self._scenario.home.altitude_m,
                 wind=(wind.north, wind.east, 0.0),
+                parameters=self._place_and_time(),
             )
         except ValueError as error:
             raise ScenarioError(self._scenario.name, f"the aircraft cannot be flown so: {error}") from error
@@ -143,6 +157,15 @@ class Hangar:
         vehicle.upload_mission(mission_plan(points, self.frame))
         vehicle.start_mission()
         return vehicle
+
+    def _place_and_time(self) -> dict[str, float]:
+        """Where and when the aircraft flies, for the sun on its wings."""
+        home = self._scenario.home
+        return {
+            "environment.latitude": math.radians(home.latitude_deg),
+            "environment.longitude": math.radians(home.longitude_deg),
+            "environment.start_time": self._scenario.start_time_utc.timestamp(),
+        }
 
 
 def mission_plan(points: Sequence[Point], frame: MapFrame) -> MissionPlan:

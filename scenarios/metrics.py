@@ -89,11 +89,17 @@ def first_pass(
 
     None if it never is. The time is that of the nearest point on the first segment that comes near enough.
     """
-    relative = track.positions[:, :2] - np.asarray(point)
-    distances, fractions = _segment_minima(relative)
-    times = track.times[:-1] + fractions * np.diff(track.times)
-    near = np.flatnonzero((distances <= radius) & (track.times[1:] >= after))
-    return float(times[near[0]]) if near.size else None
+    part = _from_time(track, after)
+    if part is None:
+        return None
+    times, positions = part
+    distances, fractions = _segment_minima(positions[:, :2] - np.asarray(point))
+    near = np.flatnonzero(distances <= radius)
+    if not near.size:
+        return None
+    first = int(near[0])
+    after_it = min(first + 1, len(times) - 1)
+    return float(times[first] + fractions[first] * (times[after_it] - times[first]))
 
 
 def nearest_pass(track: Track, point: tuple[float, float]) -> float:
@@ -161,7 +167,12 @@ def _separation(identity: int, radius: float, times: Floats, relative: Floats, *
 
 
 def _segment_minima(relative: Floats) -> tuple[Floats, Floats]:
-    """Least distance of the origin from each segment [m], and where on it (0 start, 1 end), shape (m-1,)."""
+    """Least distance of the origin from each segment [m], and where on it (0 start, 1 end), shape (m-1,).
+
+    A single point is a segment without length.
+    """
+    if len(relative) == 1:
+        relative = np.repeat(relative, 2, axis=0)
     starts = relative[:-1]
     steps = np.diff(relative, axis=0)
     squares = np.einsum("ij,ij->i", steps, steps)

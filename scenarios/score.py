@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from avoidance import Hold, Performance
+from avoidance.known import ALTITUDE_TOLERANCE
 from avoidance.parameters import Parameters
 from avoidance.tangent_graph import shortest_path
 from avoidance.types import Floats
@@ -31,9 +32,9 @@ class Fate:
     goal: Goal
     """Where it could be reached."""
     passed_at: float | None
-    """When it, or what stands for it, was passed within the acceptance radius [s]; None if never."""
+    """When the track was as near to it as can be, within the acceptance radius [s]; None if never."""
     missed_by: float | None
-    """Least distance of the track from the goal [m]; None if there is no goal."""
+    """How much farther than that from it the track stayed at its nearest [m]; None if there is no goal."""
 
     @property
     def met(self) -> bool:
@@ -52,6 +53,16 @@ class VehicleScore:
     """One per waypoint of its mission."""
     separations: tuple[Separation, ...]
     """One per obstacle that existed, traffic and other own vehicles included."""
+
+
+@dataclass(frozen=True, slots=True)
+class Energy:
+    """What a flight has left of the battery."""
+
+    state_of_charge: float
+    """At the end, 0 to 1."""
+    reserve_used: bool
+    """Whether the reserve was touched at any time: a long hold or detour can do that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,13 +91,13 @@ class Score:
         return tuple(one for vehicle in self.vehicles for one in vehicle.separations)
 
 
-def score(flown: Flown) -> Score:
-    """Judge a flight from its tracks alone, with all obstacles known.
+def score(flown: Flown, energy: Energy | None = None) -> Score:
+    """Judge a flight from its tracks alone, with all obstacles known; the battery is as the plant tells.
 
     Notes
     -----
-    Completed: the vehicle reached the end of its mission, and every waypoint, or the point that
-    `scenarios.goals` finds for it, was passed in order within the acceptance radius.
+    Completed: the vehicle reached the end of its mission and, in order, came as near to every waypoint as
+    `scenarios.goals` finds possible, within the acceptance radius.
     """
     wall = flown.wall.total
     vehicles = tuple(score_vehicle(flown, vehicle) for vehicle in flown.vehicles)
@@ -97,6 +108,8 @@ def score(flown: Flown) -> Score:
     duration = figures["flight_time_s"]
     summary = {
         **figures,
+        "state_of_charge": None if energy is None else round(energy.state_of_charge, 4),
+        "reserve_used": None if energy is None else energy.reserve_used,
         "wall_s": round(wall, 3),
         "real_time_factor": round(duration / wall, 1) if wall > 0.0 else None,
         "seed": flown.seed,
@@ -188,24 +201,31 @@ def replacement_rule(parameters: Parameters, performance: Performance) -> Replac
     """The published margins of a preset.
 
     By default a waypoint needs RS + margin + room to turn, and so does what replaces it. The paper
-    replaces what lies inside the sphere, by a point at RS + tolerance.
+    replaces what lies inside the sphere, by a point at RS + tolerance. Both keep their altitude within
+    `ALTITUDE_TOLERANCE`.
     """
     margin = max(parameters.margin, performance.tracking_error)
     turn = performance.turn_room
     if parameters.all_obstacles:
-        return ReplacementRule(margin, turn, (turn, 0.5 * turn))
-    return ReplacementRule(margin, 0.0, (parameters.tolerance - parameters.margin, turn))
+        return ReplacementRule(margin, turn, (turn, 0.5 * turn), ALTITUDE_TOLERANCE)
+    rooms = (parameters.tolerance - parameters.margin, turn)
+    return ReplacementRule(margin, 0.0, rooms, ALTITUDE_TOLERANCE)
 
 
 def waypoint_fates(track: Track, targets: Sequence[Goal], radius: float) -> list[Fate]:
-    """Which goals were passed within `radius` [m], in their order; the waypoint itself counts as well."""
+    """When each waypoint was met, in their order, within `radius` [m].
+
+    Notes
+    -----
+    A waypoint that was replaced is met anywhere within its shift + `radius`: several points may be equally
+    near to it (all of a circle, if an obstacle stands on it), and none of them is the right one.
+    """
     fates = []
     after = -math.inf
     for goal in targets:
-        places = [(goal.north, goal.east)] + ([goal.point] if goal.point and goal.replaced else [])
-        passes = [t for p in places if (t := first_pass(track, p, radius, after)) is not None]
-        passed = min(passes, default=None)
-        missed = None if goal.point is None else nearest_pass(track, goal.point)
+        place = (goal.north, goal.east)
+        passed = first_pass(track, place, goal.shift + radius, after)
+        missed = None if goal.point is None else max(nearest_pass(track, place) - goal.shift, 0.0)
         fates.append(Fate(goal, passed, missed))
         after = after if passed is None else passed
     return fates

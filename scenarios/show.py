@@ -179,7 +179,9 @@ def _verdict(flown: Flown, score: Score) -> str:
         times = score.summary["fence_breaches"]
         parts.append(f"The geofence was left {'once' if times == 1 else f'{times} times'}.")
     if not parts:
-        return "Flown safely: the mission was completed and no safety sphere entered."
+        parts.append("Flown safely: the mission was completed and no safety sphere entered.")
+    if score.summary["reserve_used"]:
+        parts.append("The battery's reserve was used.")
     return " ".join(parts)
 
 
@@ -208,6 +210,9 @@ def _rows(flown: Flown, score: Score) -> list[tuple[str, str, str]]:
         ("changes of the route", str(summary["replans"]), "" if flown.avoidance else "avoidance was off")
     )
     rows.append(("waypoints replaced", str(summary["waypoints_replaced"]), "by the nearest safe point"))
+    if summary["state_of_charge"] is not None:
+        told = "the reserve was used" if summary["reserve_used"] else "the reserve was not touched"
+        rows.append(("battery at the end", f"{100.0 * summary['state_of_charge']:.0f} %", told))
     if summary["decision_ms"]["median"] is not None:
         longest = f"99 % took less than {summary['decision_ms']['p99']:.1f} ms"
         rows.append(

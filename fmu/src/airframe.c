@@ -51,47 +51,26 @@ double drag_coefficient(const Variables *v, double alpha, double beta, double el
         + beta * (v->aircraft_aero_CD_beta + beta * v->aircraft_aero_CD_beta2);
 }
 
-/* Rows are north, east, down; columns the body axes (Beard & McLain B.1). */
-static void rotation(const double q[4], double R[9]) {
-    double w = q[0], x = q[1], y = q[2], z = q[3];
-    R[0] = 1.0 - 2.0 * (y * y + z * z), R[1] = 2.0 * (x * y - w * z), R[2] = 2.0 * (x * z + w * y);
-    R[3] = 2.0 * (x * y + w * z), R[4] = 1.0 - 2.0 * (x * x + z * z), R[5] = 2.0 * (y * z - w * x);
-    R[6] = 2.0 * (x * z - w * y), R[7] = 2.0 * (y * z + w * x), R[8] = 1.0 - 2.0 * (x * x + y * y);
+/* Gravity falls with height above mean sea level, linearly. */
+double gravity_at(const Variables *v, double altitude) {
+    return v->environment_gravity - v->environment_gravity_gradient * (v->environment_home_elevation + altitude);
 }
 
-static void rotate(const double R[9], const double b[3], double ned[3]) {
-    for (int i = 0; i < 3; i++) ned[i] = R[3 * i] * b[0] + R[3 * i + 1] * b[1] + R[3 * i + 2] * b[2];
-}
-
-static void rotate_back(const double R[9], const double n[3], double b[3]) {
-    for (int i = 0; i < 3; i++) b[i] = R[i] * n[0] + R[3 + i] * n[1] + R[6 + i] * n[2];
-}
-
-void body_from_ground(const double q[4], const double n[3], double b[3]) {
-    double R[9];
-    rotation(q, R);
-    rotate_back(R, n, b);
-}
-
-void quaternion_from_euler(double bank, double pitch, double heading, double q[4]) {
-    double cr = cos(0.5 * bank), sr = sin(0.5 * bank);
-    double cp = cos(0.5 * pitch), sp = sin(0.5 * pitch);
-    double cy = cos(0.5 * heading), sy = sin(0.5 * heading);
-    q[0] = cr * cp * cy + sr * sp * sy;
-    q[1] = sr * cp * cy - cr * sp * sy;
-    q[2] = cr * sp * cy + sr * cp * sy;
-    q[3] = cr * cp * sy - sr * sp * cy;
+static void wind_in_body(const Model *m, const double R[9], double wind[3]) {
+    const double *gust = m->turbulence.gust;
+    double ned[3] = {m->v.wind_north + gust[0], m->v.wind_east + gust[1], m->v.wind_down + gust[2]};
+    rotate_back(R, ned, wind);
 }
 
 /* Forces and moments of air and engine on the body. */
 static void airframe_loads(const Model *m, const double x[], const double R[9], Loads *loads) {
     const Variables *v = &m->v;
-    double wind_ned[3] = {v->wind_north, v->wind_east, v->wind_down}, wind[3];
-    rotate_back(R, wind_ned, wind);
+    double wind[3], density = density_at(m, x[X_ALTITUDE]);
+    wind_in_body(m, R, wind);
     double u = x[X_U] - wind[0], side = x[X_V] - wind[1], w = x[X_W] - wind[2];
     double airspeed = sqrt(u * u + side * side + w * w);
     *loads = (Loads){.airspeed = airspeed};
-    loads->thrust = thrust(v, x[X_THROTTLE], airspeed, m->density);
+    loads->thrust = thrust(v, x[X_THROTTLE], airspeed, density);
     loads->force[0] = loads->thrust;
     if (airspeed < SLOWEST) return;
 
@@ -116,7 +95,7 @@ static void airframe_loads(const Model *m, const double x[], const double R[9], 
     double Cn = v->aircraft_aero_Cn_beta * beta + v->aircraft_aero_Cn_p * p + v->aircraft_aero_Cn_r * r
         + v->aircraft_aero_Cn_aileron * da + v->aircraft_aero_Cn_rudder * dr;
 
-    double pressure_area = 0.5 * m->density * airspeed * airspeed * v->aircraft_wing_area;
+    double pressure_area = 0.5 * density * airspeed * airspeed * v->aircraft_wing_area;
     double in_plane = sqrt(u * u + w * w);
     double per_plane = in_plane > 0.0 ? 1.0 / in_plane : 0.0, ca = u * per_plane, sa = w * per_plane;
     loads->force[0] += pressure_area * (CL * sa - CD * ca);
@@ -131,23 +110,79 @@ static double lag(double command, double position, double low, double high, doub
     return clamp((clamp(command, low, high) - position) * per_time, -rate, rate);
 }
 
+/* Actuators. Elevons: the limits are those of each elevon, aileron and elevator their difference and mean
+ * (left = elevator + aileron, right = elevator - aileron, trailing edge down positive). */
+static void actuator_rates(const Model *m, const double x[], double dx[]) {
+    const Variables *v = &m->v;
+    double per_time = 1.0 / v->aircraft_actuator_surface_time, rate = v->aircraft_actuator_surface_rate;
+    double a = v->aircraft_actuator_aileron_limit, el = v->aircraft_actuator_elevator_limit;
+    double ru = v->aircraft_actuator_rudder_limit;
+    const double *command = m->actuator;
+    if (v->aircraft_actuator_elevons != 0.0) {
+        double left = lag(command[1] + command[0], x[X_ELEVATOR] + x[X_AILERON], -a, a, per_time, rate);
+        double right = lag(command[1] - command[0], x[X_ELEVATOR] - x[X_AILERON], -a, a, per_time, rate);
+        dx[X_AILERON] = 0.5 * (left - right);
+        dx[X_ELEVATOR] = 0.5 * (left + right);
+    } else {
+        dx[X_AILERON] = lag(command[0], x[X_AILERON], -a, a, per_time, rate);
+        dx[X_ELEVATOR] = lag(command[1], x[X_ELEVATOR], -el, el, per_time, rate);
+    }
+    dx[X_RUDDER] = lag(command[2], x[X_RUDDER], -ru, ru, per_time, rate);
+    dx[X_THROTTLE] = lag(m->empty ? 0.0 : command[3], x[X_THROTTLE], 0.0, 1.0,
+                         1.0 / v->aircraft_actuator_throttle_time, v->aircraft_actuator_throttle_rate);
+}
+
+/* Earth rotation and the curvature of its surface (Stevens & Lewis 1.5; Groves 2013, 5.4): the velocity over
+ * ground feels twice the earth's rate and the transport rate v/R, the attitude turns against both. */
+static void earth_turns(const Model *m, const double x[], const double R[9], const double ned[3], double *dx) {
+    const Variables *v = &m->v;
+    double rate = v->environment_earth_rate, per_radius = v->environment_earth_curvature;
+    double latitude = v->environment_latitude + x[X_NORTH] * per_radius;
+    double cl = cos(latitude), sl = sin(latitude);
+    double earth[3] = {rate * cl, 0.0, -rate * sl}, turn[3], spin[3];
+    double frame[3] = {earth[0] + ned[1] * per_radius, -ned[0] * per_radius,
+                       earth[2] - ned[1] * per_radius * (fabs(cl) > 1e-6 ? sl / cl : 0.0)};
+    rotate_back(R, earth, turn);
+    rotate_back(R, frame, spin);
+    dx[X_U] -= turn[1] * x[X_W] - turn[2] * x[X_V];
+    dx[X_V] -= turn[2] * x[X_U] - turn[0] * x[X_W];
+    dx[X_W] -= turn[0] * x[X_V] - turn[1] * x[X_U];
+    const double *e = x + X_Q0;
+    dx[X_Q0] -= 0.5 * (-e[1] * spin[0] - e[2] * spin[1] - e[3] * spin[2]);
+    dx[X_Q1] -= 0.5 * (e[0] * spin[0] + e[2] * spin[2] - e[3] * spin[1]);
+    dx[X_Q2] -= 0.5 * (e[0] * spin[1] - e[1] * spin[2] + e[3] * spin[0]);
+    dx[X_Q3] -= 0.5 * (e[0] * spin[2] + e[1] * spin[1] - e[2] * spin[0]);
+}
+
+/* Where an importer integrates, nobody brings the quaternion back to unit length: draw it there. */
+static void keep_unit_length(const double x[], double dx[]) {
+    const double *e = x + X_Q0;
+    double excess = e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3] - 1.0;
+    for (int i = 0; i < 4; i++) dx[X_Q0 + i] -= 5.0 * clamp(excess, -1.0, 1.0) * e[i];
+}
+
 void airframe_derivative(const Model *m, const double x[], double dx[], Loads *loads) {
     const Variables *v = &m->v;
     double R[9], ned[3];
-    rotation(x + X_Q0, R);
+    rotation_matrix(x + X_Q0, R);
     airframe_loads(m, x, R, loads);
+    loads->sunlight = -(R[2] * m->sun.direction[0] + R[5] * m->sun.direction[1] + R[8] * m->sun.direction[2]);
+    actuator_rates(m, x, dx);
     rotate(R, x + X_U, ned);
     dx[X_NORTH] = ned[0];
     dx[X_EAST] = ned[1];
     dx[X_ALTITUDE] = -ned[2];
+    if (m->flight != FLIGHT_FLYING) {
+        ground_motion(m, x, R, loads, dx);
+        return;
+    }
 
-    double gravity = v->environment_gravity;
-    double g[3] = {gravity * R[6], gravity * R[7], gravity * R[8]};
+    double gravity = gravity_at(v, x[X_ALTITUDE]);
     double p = x[X_P], q = x[X_Q], r = x[X_R];
     double per_mass = 1.0 / v->aircraft_mass;
-    dx[X_U] = r * x[X_V] - q * x[X_W] + g[0] + loads->force[0] * per_mass;
-    dx[X_V] = p * x[X_W] - r * x[X_U] + g[1] + loads->force[1] * per_mass;
-    dx[X_W] = q * x[X_U] - p * x[X_V] + g[2] + loads->force[2] * per_mass;
+    dx[X_U] = r * x[X_V] - q * x[X_W] + gravity * R[6] + loads->force[0] * per_mass;
+    dx[X_V] = p * x[X_W] - r * x[X_U] + gravity * R[7] + loads->force[1] * per_mass;
+    dx[X_W] = q * x[X_U] - p * x[X_V] + gravity * R[8] + loads->force[2] * per_mass;
 
     const double *e = x + X_Q0;
     dx[X_Q0] = 0.5 * (-e[1] * p - e[2] * q - e[3] * r);
@@ -161,40 +196,37 @@ void airframe_derivative(const Model *m, const double x[], double dx[], Loads *l
     dx[X_Q] = k->c5 * p * r - k->c6 * (p * p - r * r) + k->c7 * moment[1];
     dx[X_R] = (k->c8 * p - k->c2 * r) * q + k->c4 * moment[0] + k->c9 * moment[2];
 
-    double per_time = 1.0 / v->aircraft_actuator_surface_time, rate = v->aircraft_actuator_surface_rate;
-    double a = v->aircraft_actuator_aileron_limit, el = v->aircraft_actuator_elevator_limit;
-    double ru = v->aircraft_actuator_rudder_limit;
-    dx[X_AILERON] = lag(m->actuator[0], x[X_AILERON], -a, a, per_time, rate);
-    dx[X_ELEVATOR] = lag(m->actuator[1], x[X_ELEVATOR], -el, el, per_time, rate);
-    dx[X_RUDDER] = lag(m->actuator[2], x[X_RUDDER], -ru, ru, per_time, rate);
-    dx[X_THROTTLE] = lag(m->actuator[3], x[X_THROTTLE], 0.0, 1.0, 1.0 / v->aircraft_actuator_throttle_time,
-                         v->aircraft_actuator_throttle_rate);
+    if (v->environment_earth_rate != 0.0 || v->environment_earth_curvature != 0.0) earth_turns(m, x, R, ned, dx);
+    if (m->continuous) keep_unit_length(x, dx);
 }
 
 /* One Runge-Kutta step of order four; the quaternion is brought back to unit length. */
 void airframe_advance(Model *m, double h) {
-    double k[N_STATES], sum[N_STATES], at[N_STATES];
+    double k[N_STATES], sum[N_MECHANICAL], at[N_STATES];
     Loads loads;
     double *x = m->x;
     airframe_derivative(m, x, k, &loads);
-    for (int i = 0; i < N_STATES; i++) { sum[i] = k[i]; at[i] = x[i] + 0.5 * h * k[i]; }
+    m->power = power_balance(m, x[X_ENERGY], loads.thrust * loads.airspeed, loads.sunlight);
+    for (int i = 0; i < N_MECHANICAL; i++) { sum[i] = k[i]; at[i] = x[i] + 0.5 * h * k[i]; }
     airframe_derivative(m, at, k, &loads);
-    for (int i = 0; i < N_STATES; i++) { sum[i] += 2.0 * k[i]; at[i] = x[i] + 0.5 * h * k[i]; }
+    for (int i = 0; i < N_MECHANICAL; i++) { sum[i] += 2.0 * k[i]; at[i] = x[i] + 0.5 * h * k[i]; }
     airframe_derivative(m, at, k, &loads);
-    for (int i = 0; i < N_STATES; i++) { sum[i] += 2.0 * k[i]; at[i] = x[i] + h * k[i]; }
+    for (int i = 0; i < N_MECHANICAL; i++) { sum[i] += 2.0 * k[i]; at[i] = x[i] + h * k[i]; }
     airframe_derivative(m, at, k, &loads);
-    for (int i = 0; i < N_STATES; i++) x[i] += h / 6.0 * (sum[i] + k[i]);
+    for (int i = 0; i < N_MECHANICAL; i++) x[i] += h / 6.0 * (sum[i] + k[i]);
     double *e = x + X_Q0;
     double scale = 1.0 / sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3]);
     for (int i = 0; i < 4; i++) e[i] *= scale;
+    battery_advance(m, &m->power, h);
 }
 
+/* What the guidance needs. */
 void airframe_motion(const Model *m, Motion *o) {
-    const double *x = m->x, *e = x + X_Q0;
-    double R[9], ned[3], wind_ned[3] = {m->v.wind_north, m->v.wind_east, m->v.wind_down}, wind[3];
-    rotation(e, R);
+    const double *x = m->x;
+    double R[9], ned[3], wind[3];
+    rotation_matrix(x + X_Q0, R);
     rotate(R, x + X_U, ned);
-    rotate_back(R, wind_ned, wind);
+    wind_in_body(m, R, wind);
     double u = x[X_U] - wind[0], side = x[X_V] - wind[1], w = x[X_W] - wind[2];
     o->north = x[X_NORTH];
     o->east = x[X_EAST];
@@ -203,12 +235,22 @@ void airframe_motion(const Model *m, Motion *o) {
     o->velocity_east = ned[1];
     o->climb = -ned[2];
     o->airspeed = sqrt(u * u + side * side + w * w);
-    o->alpha = o->airspeed > SLOWEST ? atan2(w, u) : 0.0;
     o->beta = o->airspeed > SLOWEST ? asin(clamp(side / o->airspeed, -1.0, 1.0)) : 0.0;
-    o->bank = atan2(2.0 * (e[0] * e[1] + e[2] * e[3]), 1.0 - 2.0 * (e[1] * e[1] + e[2] * e[2]));
-    o->pitch = asin(clamp(2.0 * (e[0] * e[2] - e[1] * e[3]), -1.0, 1.0));
-    o->heading = atan2(2.0 * (e[0] * e[3] + e[1] * e[2]), 1.0 - 2.0 * (e[2] * e[2] + e[3] * e[3]));
+    o->bank = atan2(R[7], R[8]);
+    o->pitch = -asin(clamp(R[6], -1.0, 1.0));
+    double cos_pitch = sqrt(R[7] * R[7] + R[8] * R[8]), per = cos_pitch > 1e-9 ? 1.0 / cos_pitch : 0.0;
+    o->sin_bank = R[7] * per;
+    o->cos_bank = cos_pitch > 1e-9 ? R[8] * per : 1.0;
     o->p = x[X_P];
     o->q = x[X_Q];
     o->r = x[X_R];
+}
+
+/* The angles that only outputs need. */
+void airframe_angles(const Model *m, Motion *o) {
+    double R[9], wind[3];
+    rotation_matrix(m->x + X_Q0, R);
+    wind_in_body(m, R, wind);
+    o->alpha = o->airspeed > SLOWEST ? atan2(m->x[X_W] - wind[2], m->x[X_U] - wind[0]) : 0.0;
+    o->heading = atan2(R[3], R[0]);
 }

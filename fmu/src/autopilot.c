@@ -10,12 +10,13 @@
 #define ROLL_INTEGRAL_BAND 0.1   /* integrate only near the commanded bank [rad] */
 #define CLIMB_INTEGRAL_BAND 0.03 /* integrate only near the commanded path [rad] */
 #define SPEED_INTEGRAL_BAND 0.5  /* integrate only near the commanded airspeed [m/s] */
-#define STEEPEST_BANK 1.2        /* load factor is reckoned no further [rad] */
+#define STEEPEST_BANK 0.36235775447667357 /* cosine of 1.2 rad: load factor is reckoned no further */
 
 /* Integrals zero, and the feed-forward where level flight has it. */
 void autopilot_reset(Model *m) {
     memset(&m->autopilot, 0, sizeof m->autopilot);
     m->autopilot.alpha = m->trim.alpha;
+    m->autopilot.sin_alpha = sin(m->trim.alpha);
     m->autopilot.thrust = m->trim.thrust;
 }
 
@@ -36,7 +37,7 @@ static double rudder(Model *m, const Motion *o, double airspeed, double period) 
     const Variables *v = &m->v;
     double limit = v->aircraft_actuator_rudder_limit;
     if (limit <= 0.0) return 0.0;
-    double turn = v->environment_gravity * sin(o->bank) * cos(o->pitch) / airspeed;
+    double turn = m->gravity * o->sin_bank * cos(o->pitch) / airspeed;
     double *integral = &m->autopilot.sideslip;
     *integral = clamp(*integral + period * v->aircraft_control_sideslip_integral_gain * o->beta, -limit, limit);
     return v->aircraft_control_yaw_rate_gain * (turn - o->r) + v->aircraft_control_sideslip_gain * o->beta + *integral;
@@ -44,22 +45,23 @@ static double rudder(Model *m, const Motion *o, double airspeed, double period) 
 
 /* Climb demand to elevator. The angle of attack that carries the weight in this turn follows from the lift
  * polynomial by one Newton step per sample; pitch = path + alpha cos(bank) + beta sin(bank). */
-static double elevator(Model *m, const Motion *o, double airspeed, double pressure_area, double path, double period) {
+static double elevator(Model *m, const Motion *o, double airspeed, double pressure_area, double rise, double period) {
     const Variables *v = &m->v;
     AutopilotMemory *a = &m->autopilot;
-    double bank = clamp(o->bank, -STEEPEST_BANK, STEEPEST_BANK);
-    double cb = cos(bank), sb = sin(bank);
-    double turn_pitch_rate = v->environment_gravity / airspeed * sb * sb / cb;
+    double cb = o->cos_bank > STEEPEST_BANK ? o->cos_bank : STEEPEST_BANK;
+    double most = sqrt(1.0 - cb * cb), sb = clamp(o->sin_bank, -most, most);
+    double turn_pitch_rate = m->gravity / airspeed * sb * sb / cb;
     double q = turn_pitch_rate * v->aircraft_wing_chord / (2.0 * airspeed);
     double moment = v->aircraft_aero_Cm0 + v->aircraft_aero_Cm_alpha * a->alpha + v->aircraft_aero_Cm_q * q;
     double needed = -moment / v->aircraft_aero_Cm_elevator, slope;
     double carried = lift_coefficient(v, a->alpha, &slope) + v->aircraft_aero_CL_q * q
-        + v->aircraft_aero_CL_elevator * needed + a->thrust * sin(a->alpha) / pressure_area;
-    double weight = v->aircraft_mass * v->environment_gravity * cos(path) / cb;
+        + v->aircraft_aero_CL_elevator * needed + a->thrust * a->sin_alpha / pressure_area;
+    double weight = v->aircraft_mass * m->gravity * sqrt(1.0 - rise * rise) / cb;
     if (slope > 0.1) a->alpha += (weight / pressure_area - carried) / slope;
     a->alpha = clamp(a->alpha, v->aircraft_aero_alpha_min, v->aircraft_aero_alpha_max);
+    a->sin_alpha = sin(a->alpha);
 
-    double error = path - asin(clamp(o->climb / airspeed, -0.9, 0.9));
+    double path = asin(rise), error = path - asin(clamp(o->climb / airspeed, -0.9, 0.9));
     if (fabs(error) < CLIMB_INTEGRAL_BAND)
         a->climb = clamp(a->climb + period * v->aircraft_control_climb_integral_gain * error, -0.1, 0.1);
     double pitch = path + a->alpha * cb + o->beta * sb + v->aircraft_control_climb_gain * error + a->climb;
@@ -67,14 +69,14 @@ static double elevator(Model *m, const Motion *o, double airspeed, double pressu
     return needed - v->aircraft_control_pitch_gain * (pitch - o->pitch) + v->aircraft_control_pitch_rate_gain * rate;
 }
 
-static double throttle(Model *m, const Motion *o, double pressure_area, double path, double de, double period) {
+static double throttle(Model *m, const Motion *o, double pressure_area, double rise, double de, double period) {
     const Variables *v = &m->v;
     AutopilotMemory *a = &m->autopilot;
     double error = m->demand.airspeed - o->airspeed, limit = v->aircraft_control_acceleration_limit;
-    double drag = pressure_area * drag_coefficient(v, a->alpha, o->beta, de) / cos(a->alpha);
-    double ahead = v->environment_gravity * sin(path) + clamp(error / v->aircraft_control_airspeed_time, -limit, limit);
+    double drag = pressure_area * drag_coefficient(v, a->alpha, o->beta, de) / sqrt(clamp(1.0 - a->sin_alpha * a->sin_alpha, 0.01, 1.0));
+    double ahead = m->gravity * rise + clamp(error / v->aircraft_control_airspeed_time, -limit, limit);
     a->thrust = drag + v->aircraft_mass * (ahead + a->airspeed);
-    double setting = throttle_for(v, a->thrust, o->airspeed, m->density);
+    double setting = throttle_for(v, a->thrust, o->airspeed, m->air.density);
     bool pushing = (setting >= 1.0 && error > 0.0) || (setting <= 0.0 && error < 0.0);
     if (!pushing && fabs(error) < SPEED_INTEGRAL_BAND)
         a->airspeed = clamp(a->airspeed + period * v->aircraft_control_airspeed_integral_gain * error, -1.0, 1.0);
@@ -85,10 +87,10 @@ void autopilot_sample(Model *m, const Motion *o, double period) {
     const Variables *v = &m->v;
     double slowest = 0.5 * v->aircraft_limits_min_airspeed;
     double airspeed = o->airspeed > slowest ? o->airspeed : slowest;
-    double pressure_area = 0.5 * m->density * airspeed * airspeed * v->aircraft_wing_area;
-    double path = asin(clamp(m->demand.climb / airspeed, -0.5, 0.5));
+    double pressure_area = 0.5 * m->air.density * airspeed * airspeed * v->aircraft_wing_area;
+    double rise = clamp(m->demand.climb / airspeed, -0.5, 0.5);
     m->actuator[0] = aileron(m, o, airspeed, period);
-    m->actuator[1] = elevator(m, o, airspeed, pressure_area, path, period);
+    m->actuator[1] = elevator(m, o, airspeed, pressure_area, rise, period);
     m->actuator[2] = rudder(m, o, airspeed, period);
-    m->actuator[3] = throttle(m, o, pressure_area, path, m->x[X_ELEVATOR], period);
+    m->actuator[3] = throttle(m, o, pressure_area, rise, m->x[X_ELEVATOR], period);
 }

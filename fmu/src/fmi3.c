@@ -1,88 +1,40 @@
-/* FMI 3.0 Co-Simulation: life cycle, values, steps. A wrong call or value is refused with a message and
- * changes nothing. No globals; any number of instances. */
-#include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
+/* FMI 3.0: instances, life cycle, values, saved states, derivatives; translated to component.h. */
 #include "fmi3.h"
-#define VARIABLE_FACTS
-#include "model.h"
 
-typedef enum { INSTANTIATED, INITIALIZING, STEPPING, TERMINATED, FAILED } Phase;
-static const char *const PHASES[] = {"Instantiated", "Initialization Mode", "Step Mode", "Terminated", "failed"};
-enum { IN_INSTANTIATED = 1, IN_INITIALIZING = 2, IN_STEPPING = 4, IN_TERMINATED = 8, IN_FAILED = 16 };
+#include <stdlib.h>
 
-#define LONGEST_STEP 3600.0
+#include "component.h"
 
-typedef struct {
-    Model model;
-    Phase phase;
-    bool logging;
-    bool stop_defined;
-    double start_time, stop_time;
-    fmi3InstanceEnvironment environment;
-    fmi3LogMessageCallback log;
-    char name[128];
-} Instance;
+#define ALLOWED(function, modes) if (!component_allowed(instance, function, modes)) return fmi3Error
 
-static fmi3Status refuse(const Instance *s, const char *format, ...) {
-    if (s->log && s->logging) {
-        char text[512];
-        int used = snprintf(text, sizeof text, "%s: ", s->name);
-        va_list arguments;
-        va_start(arguments, format);
-        vsnprintf(text + used, sizeof text - (size_t)used, format, arguments);
-        va_end(arguments);
-        s->log(s->environment, fmi3Error, "logStatusError", text);
-    }
-    return fmi3Error;
-}
-
-fmi3Status fmi3_refuse(fmi3Instance instance, const char *function, const char *reason) {
-    return instance ? refuse(instance, "%s: %s", function, reason) : fmi3Error;
-}
-
-/* Whether a function may be called now. */
-static bool allowed(const Instance *s, const char *function, unsigned phases) {
-    if (!s) return false;
-    if (phases & (1u << s->phase)) return true;
-    refuse(s, "%s must not be called in state \"%s\"", function, PHASES[s->phase]);
-    return false;
+static void say(const Component *c, int status, const char *category, const char *text) {
+    ((fmi3LogMessageCallback)c->logger)(c->environment, (fmi3Status)status, category, text);
 }
 
 FMI3_EXPORT const char *fmi3GetVersion(void) { return "3.0"; }
 
 FMI3_EXPORT fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean on, size_t n, const fmi3String names[]) {
-    Instance *s = instance;
-    if (!s) return fmi3Error;
-    for (size_t i = 0; i < n; i++) {
-        if (!names || !names[i] || strcmp(names[i], "logStatusError") != 0)
-            return refuse(s, "fmi3SetDebugLogging: unknown log category \"%s\"", names && names[i] ? names[i] : "");
-    }
-    s->logging = on;
-    return fmi3OK;
+    return instance ? (fmi3Status)component_log(instance, on, n, names) : fmi3Error;
 }
 
 FMI3_EXPORT fmi3Instance fmi3InstantiateCoSimulation(
     fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible, fmi3Boolean logging,
     fmi3Boolean events, fmi3Boolean early, const fmi3ValueReference required[], size_t n_required,
     fmi3InstanceEnvironment environment, fmi3LogMessageCallback log, fmi3IntermediateUpdateCallback update) {
-    (void)resources, (void)visible, (void)events, (void)early, (void)required, (void)n_required, (void)update;
-    Instance *s = calloc(1, sizeof *s);
-    if (!s) return 0;
-    s->environment = environment;
-    s->log = log;
-    s->logging = logging;
-    snprintf(s->name, sizeof s->name, "%s", name ? name : "");
-    if (!token || strcmp(token, MODEL_TOKEN) != 0) {
-        refuse(s, "instantiation token \"%s\" is not this model's %s", token ? token : "", MODEL_TOKEN);
-        free(s);
-        return 0;
-    }
-    model_defaults(&s->model);
-    return s;
+    (void)resources, (void)visible, (void)required, (void)n_required, (void)update;
+    Component *c = component_new(name, token, CO_SIMULATION, logging, environment, (void (*)(void))log, say);
+    if (!c) return 0;
+    c->event_mode = events;
+    c->early_return = early;
+    return c;
+}
+
+FMI3_EXPORT fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String resources,
+                                                      fmi3Boolean visible, fmi3Boolean logging,
+                                                      fmi3InstanceEnvironment environment,
+                                                      fmi3LogMessageCallback log) {
+    (void)resources, (void)visible;
+    return component_new(name, token, MODEL_EXCHANGE, logging, environment, (void (*)(void))log, say);
 }
 
 FMI3_EXPORT void fmi3FreeInstance(fmi3Instance instance) { free(instance); }
@@ -91,141 +43,62 @@ FMI3_EXPORT fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Bo
                                                    fmi3Float64 tolerance, fmi3Float64 start, fmi3Boolean stop_defined,
                                                    fmi3Float64 stop) {
     (void)tolerance_defined, (void)tolerance;
-    Instance *s = instance;
-    if (!allowed(s, "fmi3EnterInitializationMode", IN_INSTANTIATED)) return fmi3Error;
-    if (!isfinite(start) || fabs(start) > 1e9) return refuse(s, "startTime = %g is not a usable time", start);
-    if (stop_defined && !(stop >= start && isfinite(stop)))
-        return refuse(s, "stopTime = %g is not after startTime = %g", stop, start);
-    s->start_time = start;
-    s->stop_defined = stop_defined;
-    s->stop_time = stop;
-    s->phase = INITIALIZING;
-    s->model.outputs_stale = true;
+    ALLOWED("fmi3EnterInitializationMode", IN_INSTANTIATED);
+    Component *c = instance;
+    if (component_set_times(c, start, stop_defined, stop) != STATUS_OK) return fmi3Error;
+    c->mode = INITIALIZING;
+    c->model.outputs_stale = true;
     return fmi3OK;
-}
-
-/* Initial state from the parameters as they are now; called for outputs in Initialization Mode as well. */
-static fmi3Status initialise(Instance *s) {
-    const char *wrong = model_initialise(&s->model, s->start_time);
-    return wrong ? refuse(s, "%s", wrong) : fmi3OK;
 }
 
 FMI3_EXPORT fmi3Status fmi3ExitInitializationMode(fmi3Instance instance) {
-    Instance *s = instance;
-    if (!allowed(s, "fmi3ExitInitializationMode", IN_INITIALIZING)) return fmi3Error;
-    fmi3Status status = initialise(s);
-    if (status == fmi3OK) s->phase = STEPPING;
-    return status;
+    return (fmi3Status)component_leave_initialization(instance, "fmi3ExitInitializationMode");
 }
 
 FMI3_EXPORT fmi3Status fmi3Terminate(fmi3Instance instance) {
-    Instance *s = instance;
-    if (!allowed(s, "fmi3Terminate", IN_STEPPING)) return fmi3Error;
-    s->phase = TERMINATED;
+    ALLOWED("fmi3Terminate", IN_STEPPING | IN_EVENT | IN_CONTINUOUS);
+    ((Component *)instance)->mode = TERMINATED;
     return fmi3OK;
 }
 
-FMI3_EXPORT fmi3Status fmi3Reset(fmi3Instance instance) {
-    Instance *s = instance;
-    if (!s) return fmi3Error;
-    model_defaults(&s->model);
-    s->phase = INSTANTIATED;
-    s->stop_defined = false;
-    return fmi3OK;
-}
+FMI3_EXPORT fmi3Status fmi3Reset(fmi3Instance instance) { return (fmi3Status)component_reset(instance); }
 
 FMI3_EXPORT fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 point, fmi3Float64 step, fmi3Boolean no_rollback,
                                   fmi3Boolean *event, fmi3Boolean *terminate, fmi3Boolean *early, fmi3Float64 *last) {
     (void)no_rollback;
-    Instance *s = instance;
-    if (!allowed(s, "fmi3DoStep", IN_STEPPING)) return fmi3Error;
-    if (!event || !terminate || !early || !last) return refuse(s, "fmi3DoStep: a result pointer is null");
-    Model *m = &s->model;
-    double now = s->start_time + (double)m->now / 1e9;
-    if (!(step > 0.0 && step <= LONGEST_STEP))
-        return refuse(s, "communicationStepSize = %g s is outside (0, %g]", step, LONGEST_STEP);
-    if (!(fabs(point - now) <= 2e-9 + 1e-12 * fabs(now)))
-        return refuse(s, "currentCommunicationPoint = %.12g s, but the model is at %.12g s", point, now);
-    if (s->stop_defined && point + step > s->stop_time + 1e-9)
-        return refuse(s, "the step from %g s by %g s goes beyond stopTime = %g s", point, step, s->stop_time);
+    ALLOWED("fmi3DoStep", IN_STEPPING);
+    if (!event || !terminate || !early || !last)
+        return (fmi3Status)component_refuse(instance, "fmi3DoStep: a result pointer is null");
     *event = *terminate = *early = false;
-    int64_t until = (int64_t)llround((point - s->start_time + step) * 1e9);
-    const char *wrong = model_advance(m, until);
-    *last = s->start_time + (double)m->now / 1e9;
-    if (!wrong) return fmi3OK;
-    s->phase = FAILED;
-    return refuse(s, "at t = %.9g s %s", *last, wrong);
-}
-
-/* Values: everything is a double in the struct, at the offset its fact tells. */
-
-static double *value_of(Instance *s, fmi3ValueReference reference) {
-    return (double *)((char *)&s->model.v + FACTS[reference].offset);
-}
-
-static fmi3Status check_list(const Instance *s, const char *function, const fmi3ValueReference refs[], size_t n,
-                             const void *values, size_t n_values, Kind kind) {
-    if (n != n_values) return refuse(s, "%s: %zu value references, but %zu values", function, n, n_values);
-    if (n > 0 && (!refs || !values)) return refuse(s, "%s: null pointer", function);
-    for (size_t i = 0; i < n; i++) {
-        if (refs[i] >= N_VARIABLES) return refuse(s, "%s: no variable has value reference %u", function, refs[i]);
-        if (FACTS[refs[i]].kind != kind) return refuse(s, "%s: %s is of another type", function, FACTS[refs[i]].name);
-    }
-    return fmi3OK;
-}
-
-/* Before getting: the list is right and the outputs belong to the present state and inputs. */
-static fmi3Status before_get(Instance *s, const char *function, const fmi3ValueReference refs[], size_t n,
-                             const void *values, size_t n_values, Kind kind) {
-    if (!allowed(s, function, IN_INSTANTIATED | IN_INITIALIZING | IN_STEPPING | IN_TERMINATED | IN_FAILED))
-        return fmi3Error;
-    if (check_list(s, function, refs, n, values, n_values, kind) != fmi3OK) return fmi3Error;
-    bool started = s->phase == INITIALIZING || s->phase == STEPPING;
-    if (!started || !s->model.outputs_stale) return fmi3OK;
-    bool outputs = false;
-    for (size_t i = 0; i < n && !outputs; i++) outputs = FACTS[refs[i]].causality == OUTPUT || refs[i] == 0;
-    if (!outputs) return fmi3OK;
-    if (s->phase == INITIALIZING && initialise(s) != fmi3OK) return fmi3Error;
-    model_outputs(&s->model);
-    return fmi3OK;
-}
-
-/* Whether one variable may be set now, and to this value. */
-static fmi3Status check_set(const Instance *s, fmi3ValueReference reference, double value) {
-    const VariableFact *fact = &FACTS[reference];
-    if (fact->causality == OUTPUT || fact->causality == INDEPENDENT)
-        return refuse(s, "%s is computed by the model and cannot be set", fact->name);
-    if (fact->causality == PARAMETER && s->phase == STEPPING)
-        return refuse(s, "%s is fixed once the run has begun", fact->name);
-    if (!isfinite(value)) return refuse(s, "%s = %g is not a finite number", fact->name, value);
-    if (value < fact->minimum || value > fact->maximum)
-        return refuse(s, "%s = %g is outside [%g, %g]", fact->name, value, fact->minimum, fact->maximum);
-    return fmi3OK;
-}
-
-static fmi3Status before_set(const Instance *s, const char *function, const fmi3ValueReference refs[], size_t n,
-                             const void *values, size_t n_values, Kind kind) {
-    if (!allowed(s, function, IN_INSTANTIATED | IN_INITIALIZING | IN_STEPPING)) return fmi3Error;
-    return check_list(s, function, refs, n, values, n_values, kind);
+    return (fmi3Status)component_step(instance, point, step, event, early, last);
 }
 
 /* One getter and one setter per FMI type; a list is refused whole, before anything is written. */
 #define ACCESS(Name, Type, kind, to_type)                                                                             \
     FMI3_EXPORT fmi3Status fmi3Get##Name(fmi3Instance instance, const fmi3ValueReference refs[], size_t n,            \
                                          Type values[], size_t n_values) {                                            \
-        Instance *s = instance;                                                                                       \
-        if (before_get(s, "fmi3Get" #Name, refs, n, values, n_values, kind) != fmi3OK) return fmi3Error;              \
-        for (size_t i = 0; i < n; i++) values[i] = to_type(*value_of(s, refs[i]));                                    \
+        List list = {refs, n, values, n_values, kind};                                                                \
+        if (component_before_get(instance, "fmi3Get" #Name, &list) != STATUS_OK) return fmi3Error;                    \
+        for (size_t i = 0, k = 0, size; i < n; i++) {                                                                 \
+            const double *from = component_read(instance, refs[i], &size);                                            \
+            for (size_t j = 0; j < size; j++) values[k++] = to_type(from[j]);                                         \
+        }                                                                                                             \
         return fmi3OK;                                                                                                \
     }                                                                                                                 \
     FMI3_EXPORT fmi3Status fmi3Set##Name(fmi3Instance instance, const fmi3ValueReference refs[], size_t n,            \
                                          const Type values[], size_t n_values) {                                      \
-        Instance *s = instance;                                                                                       \
-        if (before_set(s, "fmi3Set" #Name, refs, n, values, n_values, kind) != fmi3OK) return fmi3Error;              \
-        for (size_t i = 0; i < n; i++)                                                                                \
-            if (check_set(s, refs[i], (double)values[i]) != fmi3OK) return fmi3Error;                                 \
-        for (size_t i = 0; i < n; i++) *value_of(s, refs[i]) = (double)values[i];                                     \
-        s->model.outputs_stale = true;                                                                                \
+        List list = {refs, n, values, n_values, kind};                                                                \
+        if (component_before_set(instance, "fmi3Set" #Name, &list) != STATUS_OK) return fmi3Error;                    \
+        for (int writing = 0; writing < 2; writing++) {                                                               \
+            for (size_t i = 0, k = 0, size; i < n; i++) {                                                             \
+                component_read(instance, refs[i], &size);                                                             \
+                for (size_t j = 0; j < size; j++, k++) {                                                              \
+                    double value = (double)values[k];                                                                 \
+                    if (writing) component_write(instance, refs[i], j, value);                                        \
+                    else if (component_check_value(instance, refs[i], j, value) != STATUS_OK) return fmi3Error;       \
+                }                                                                                                     \
+            }                                                                                                         \
+        }                                                                                                             \
         return fmi3OK;                                                                                                \
     }
 
@@ -235,3 +108,56 @@ static fmi3Status before_set(const Instance *s, const char *function, const fmi3
 ACCESS(Float64, fmi3Float64, FLOAT64, AS_FLOAT64)
 ACCESS(Int32, fmi3Int32, INT32, AS_INT32)
 ACCESS(Boolean, fmi3Boolean, BOOLEAN, AS_BOOLEAN)
+
+FMI3_EXPORT fmi3Status fmi3GetDirectionalDerivative(fmi3Instance instance, const fmi3ValueReference unknowns[],
+                                                    size_t n_unknowns, const fmi3ValueReference knowns[],
+                                                    size_t n_knowns, const fmi3Float64 seed[], size_t n_seed,
+                                                    fmi3Float64 sensitivity[], size_t n_sensitivity) {
+    const char *function = "fmi3GetDirectionalDerivative";
+    ALLOWED(function, IN_INITIALIZING | IN_STEPPING | IN_EVENT | IN_CONTINUOUS);
+    List to = {unknowns, n_unknowns, sensitivity, n_sensitivity, FLOAT64}, from = {knowns, n_knowns, seed, n_seed, FLOAT64};
+    if (!unknowns || !knowns || !seed || !sensitivity || n_seed != n_knowns || n_sensitivity != n_unknowns)
+        return (fmi3Status)component_refuse(instance, "%s: one seed per known, one sensitivity per unknown", function);
+    return (fmi3Status)component_sensitivity(instance, function, &to, &from, seed, sensitivity);
+}
+
+/* Saved states. */
+
+FMI3_EXPORT fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *state) {
+    ALLOWED("fmi3GetFMUState", IN_ANY);
+    if (!state) return (fmi3Status)component_refuse(instance, "fmi3GetFMUState: null pointer");
+    return (fmi3Status)component_save(instance, state);
+}
+
+FMI3_EXPORT fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState state) {
+    ALLOWED("fmi3SetFMUState", IN_ANY);
+    return (fmi3Status)component_restore(instance, state);
+}
+
+FMI3_EXPORT fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *state) {
+    ALLOWED("fmi3FreeFMUState", IN_ANY);
+    if (!state) return fmi3OK;
+    free(*state);
+    *state = 0;
+    return fmi3OK;
+}
+
+FMI3_EXPORT fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState state, size_t *size) {
+    ALLOWED("fmi3SerializedFMUStateSize", IN_ANY);
+    if (!state || !size) return (fmi3Status)component_refuse(instance, "fmi3SerializedFMUStateSize: null pointer");
+    *size = component_saved_size();
+    return fmi3OK;
+}
+
+FMI3_EXPORT fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state, fmi3Byte bytes[],
+                                             size_t size) {
+    ALLOWED("fmi3SerializeFMUState", IN_ANY);
+    return (fmi3Status)component_serialise(instance, state, bytes, size);
+}
+
+FMI3_EXPORT fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte bytes[], size_t size,
+                                               fmi3FMUState *state) {
+    ALLOWED("fmi3DeserializeFMUState", IN_ANY);
+    if (!state) return (fmi3Status)component_refuse(instance, "fmi3DeserializeFMUState: null pointer");
+    return (fmi3Status)component_deserialise(instance, bytes, size, state);
+}

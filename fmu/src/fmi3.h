@@ -1,4 +1,4 @@
-/* FMI 3.0: the types, and the functions of Co-Simulation, as the standard's C API spells them
+/* FMI 3.0: the types, as the standard's C API spells them
  * (Functional Mock-up Interface 3.0.2, sections 2.2.3-2.2.12 and 4.2). */
 #ifndef SIDESTEP_FMI3_H
 #define SIDESTEP_FMI3_H
@@ -45,8 +45,5 @@ typedef void (*fmi3IntermediateUpdateCallback)(fmi3InstanceEnvironment, fmi3Floa
                                                fmi3Float64 *earlyReturnTime);
 typedef void (*fmi3LockPreemptionCallback)(void);
 typedef void (*fmi3UnlockPreemptionCallback)(void);
-
-/* Says that a function is not to be called here, and returns fmi3Error (fmi3.c). */
-fmi3Status fmi3_refuse(fmi3Instance instance, const char *function, const char *reason);
 
 #endif

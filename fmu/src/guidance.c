@@ -9,11 +9,10 @@
 #define PAPER_PERIOD 0.01        /* Eq. 20 [s] */
 #define PAPER_REACH 500.0        /* |DD| is clipped here [m] */
 #define STEEPEST 0.7071067811865475 /* sine of the L1 intercept angle: 45 deg */
-#define REVERSAL (0.9 * PI)      /* beyond this angle the side of a turn, once chosen, is kept */
+#define REVERSAL -0.9510565162951535 /* cosine of 0.9 pi: beyond, the side of a turn, once chosen, is kept */
 
 typedef struct {
-    double north, east;    /* unit vector along the leg */
-    double cross_track;    /* right of the leg positive [m] */
+    double cross_track;              /* right of the leg positive [m] */
     double along_speed, cross_speed; /* ground velocity along and to the right of the leg [m/s] */
 } LegGeometry;
 
@@ -37,22 +36,21 @@ static void notice_leg(Model *m, const Motion *o) {
     bool a_point = hypot(leg[2] - leg[0], leg[3] - leg[1]) < 1.0; /* then straight to it from here */
     g->origin_north = a_point ? o->north : leg[0];
     g->origin_east = a_point ? o->east : leg[1];
+    double north = leg[2] - g->origin_north, east = leg[3] - g->origin_east;
+    if (hypot(north, east) < 1e-6) { /* on the point: fly on as we go */
+        north = o->velocity_north;
+        east = o->velocity_east;
+    }
+    double length = hypot(north, east);
+    g->line_north = length > 1e-6 ? north / length : 1.0;
+    g->line_east = length > 1e-6 ? east / length : 0.0;
 }
 
 static LegGeometry leg_geometry(const GuidanceMemory *g, const Motion *o) {
     LegGeometry l;
-    double north = g->leg[2] - g->origin_north, east = g->leg[3] - g->origin_east;
-    double length = hypot(north, east);
-    if (length < 1e-6) { /* on the point: fly on as we go */
-        north = cos(o->heading);
-        east = sin(o->heading);
-        length = 1.0;
-    }
-    l.north = north / length;
-    l.east = east / length;
-    l.cross_track = l.north * (o->east - g->origin_east) - l.east * (o->north - g->origin_north);
-    l.along_speed = l.north * o->velocity_north + l.east * o->velocity_east;
-    l.cross_speed = l.north * o->velocity_east - l.east * o->velocity_north;
+    l.cross_track = g->line_north * (o->east - g->origin_east) - g->line_east * (o->north - g->origin_north);
+    l.along_speed = g->line_north * o->velocity_north + g->line_east * o->velocity_east;
+    l.cross_speed = g->line_north * o->velocity_east - g->line_east * o->velocity_north;
     return l;
 }
 
@@ -73,9 +71,11 @@ static double bank_by_paper(Model *m, const LegGeometry *l, double period) {
     return g->bank_command_deg / DEGREES;
 }
 
-static double bank_for(const Variables *v, double lateral_acceleration) {
-    double bank = atan2(lateral_acceleration, v->aircraft_kinematic_turn_factor * v->environment_gravity);
-    return clamp(bank, -v->guidance_max_bank, v->guidance_max_bank);
+static double bank_for(const Model *m, double lateral_acceleration) {
+    const Variables *v = &m->v;
+    double limit = v->guidance_max_bank, scale = v->aircraft_kinematic_turn_factor * m->gravity;
+    if (scale <= 0.0) return 0.0; /* without weight no bank turns anything */
+    return clamp(atan(lateral_acceleration / scale), -limit, limit);
 }
 
 /* Look-ahead distance [m] for a damping and period (Park et al. 2004; Curry's form in ArduPilot). */
@@ -83,49 +83,46 @@ static double l1_distance(const Variables *v, double ground_speed) {
     return v->guidance_l1_damping * v->guidance_l1_period * ground_speed / PI;
 }
 
-/* Lateral acceleration that turns the ground velocity by an angle: K V2/L1 sin(angle), K = 4 damping2. */
-static double l1_acceleration(const Variables *v, double ground_speed, double distance, double angle) {
-    double gain = 4.0 * v->guidance_l1_damping * v->guidance_l1_damping;
-    return gain * ground_speed * ground_speed / distance * sin(clamp(angle, -0.5 * PI, 0.5 * PI));
-}
-
-/* Near a reversal of course keep the side that was chosen first. */
-static double decided(GuidanceMemory *g, double angle) {
-    if (fabs(angle) < REVERSAL) g->turn_sign = 0.0;
-    else if (g->turn_sign == 0.0) g->turn_sign = angle < 0.0 ? -1.0 : 1.0;
-    else if (angle * g->turn_sign < 0.0) return angle + g->turn_sign * 2.0 * PI;
-    return angle;
+/* Lateral acceleration that turns the ground velocity by an angle: K V2/L1 sin(angle), K = 4 damping2, and no
+ * less than at a right angle beyond one. Near a reversal of course the side that was chosen first is kept.
+ * The angle is given by sine and cosine: no angle need be found. */
+static double l1_acceleration(Model *m, double speed, double distance, double sine, double cosine) {
+    GuidanceMemory *g = &m->guidance;
+    double gain = 4.0 * m->v.guidance_l1_damping * m->v.guidance_l1_damping, side = sine < 0.0 ? -1.0 : 1.0;
+    if (cosine > REVERSAL) g->turn_sign = 0.0;
+    else if (g->turn_sign == 0.0) g->turn_sign = side;
+    else side = g->turn_sign;
+    return gain * speed * speed / distance * (cosine >= 0.0 ? sine : side);
 }
 
 static double bank_by_l1(Model *m, const LegGeometry *l) {
-    const Variables *v = &m->v;
-    double speed = hypot(l->along_speed, l->cross_speed);
+    double speed = sqrt(l->along_speed * l->along_speed + l->cross_speed * l->cross_speed);
     if (speed < 0.1) speed = 0.1;
-    double distance = l1_distance(v, speed);
-    double intercept = -asin(clamp(l->cross_track / distance, -STEEPEST, STEEPEST));
-    double angle = decided(&m->guidance, wrap(intercept - atan2(l->cross_speed, l->along_speed)));
-    return bank_for(v, l1_acceleration(v, speed, distance, angle));
+    double distance = l1_distance(&m->v, speed);
+    double si = -clamp(l->cross_track / distance, -STEEPEST, STEEPEST), ci = sqrt(1.0 - si * si); /* intercept */
+    double sc = l->cross_speed / speed, cc = l->along_speed / speed;                              /* course */
+    return bank_for(m, l1_acceleration(m, speed, distance, si * cc - ci * sc, ci * cc + si * sc));
 }
 
 /* A course field that winds on to the circle, flown with the L1 law, plus the circle's own acceleration. */
 static double bank_for_orbit(Model *m, const Motion *o) {
     const Variables *v = &m->v;
     double north = o->north - v->command_orbit_north, east = o->east - v->command_orbit_east;
-    double range = hypot(north, east);
+    double range = sqrt(north * north + east * east);
     double direction = v->command_orbit_direction < 0.0 ? -1.0 : 1.0;
-    double speed = hypot(o->velocity_north, o->velocity_east);
+    double speed = sqrt(o->velocity_north * o->velocity_north + o->velocity_east * o->velocity_east);
     if (speed < 0.1) speed = 0.1;
     double distance = l1_distance(v, speed);
     double excess = range - v->command_orbit_radius;
     m->guidance.cross_track = excess;
-    double bearing = range > 1e-6 ? atan2(east, north) : 0.0;
-    double inward = atan(excess / distance);
-    double wanted = bearing + direction * (0.5 * PI + inward);
-    double course = atan2(o->velocity_east, o->velocity_north);
-    double angle = decided(&m->guidance, wrap(wanted - course));
+    double rn = range > 1e-6 ? north / range : 1.0, re = range > 1e-6 ? east / range : 0.0;
+    double ci = distance / sqrt(distance * distance + excess * excess), si = ci * excess / distance; /* inwards */
+    double wn = -si * rn - direction * ci * re, we = -si * re + direction * ci * rn;   /* course wanted */
+    double cn = o->velocity_north / speed, ce = o->velocity_east / speed;              /* course flown */
+    double sine = cn * we - ce * wn, cosine = cn * wn + ce * we;
     double around = range > 0.5 * v->command_orbit_radius ? range : 0.5 * v->command_orbit_radius;
-    double centripetal = direction * speed * speed / around * cos(inward) * clamp(cos(angle), 0.0, 1.0);
-    return bank_for(v, l1_acceleration(v, speed, distance, angle) + centripetal);
+    double centripetal = direction * speed * speed / around * ci * clamp(cosine, 0.0, 1.0);
+    return bank_for(m, l1_acceleration(m, speed, distance, sine, cosine) + centripetal);
 }
 
 /* Climb [m/s] towards the commanded altitude; less of it when airspeed is being lost or gained. */

@@ -31,6 +31,7 @@ class Twin:
 
     values: dict
     density: float
+    gravity: float = GRAVITY
 
     def __getitem__(self, key):
         return self.values["aircraft." + key]
@@ -89,7 +90,7 @@ class Twin:
         to_body = dcm(*attitude)
         specific = force / self["mass"]
         ground = np.asarray(velocity_air) + to_body @ np.asarray(wind_ned, float)
-        linear = specific + to_body @ [0, 0, GRAVITY] - np.cross(rates, ground)
+        linear = specific + to_body @ [0, 0, self.gravity] - np.cross(rates, ground)
         angular = np.linalg.solve(tensor, moment - np.cross(rates, tensor @ rates))
         return linear, angular, specific
 
@@ -113,7 +114,7 @@ class Twin:
             rise = -(dcm(*attitude).T @ air)[2]
             return [*linear, *angular, rise - climb, x[1] if rudder else x[6]]
 
-        guess = [0.05, 0, 0.05 + climb / airspeed, GRAVITY * math.tan(bank) / airspeed, 0, 0, 0, 0.5]
+        guess = [0.05, 0, 0.05 + climb / airspeed, self.gravity * math.tan(bank) / airspeed, 0, 0, 0, 0.5]
         found = root(residual, guess, tol=1e-13)
         names = ("alpha", "beta", "pitch", "turn", "aileron", "elevator", "rudder", "throttle")
         return dict(zip(names, found.x, strict=True)) | {"residual": float(np.abs(residual(found.x)).max())}

@@ -14,6 +14,12 @@ def fmu_file(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
+def fmi2_file(fmu_file):
+    """The FMI 2.0 file, which the same build writes beside it."""
+    return fmu_file.with_name("sidestep_aircraft_fmi2.fmu")
+
+
+@pytest.fixture(scope="session")
 def library(fmu_file):
     with FmuLibrary.open(fmu_file) as opened:
         yield opened

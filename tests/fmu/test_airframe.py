@@ -11,6 +11,9 @@ from fmu import load_aircraft
 from tests.fmu.aircraft_twin import Twin, dcm
 
 DEG = 180 / math.pi
+GRADIENT = 3.086e-6
+"""Default loss of gravity with height [1/s2]; the published trims know none."""
+EVEN = {"environment.gravity_gradient": 0.0}
 RUDDER = {"skywalker_x8": False, "techpod": True}
 DENSITY = {"skywalker_x8": 1.225, "techpod": 1.18}
 # Trims at 15 m/s from the project's aircraft data (aircraft.json, "trims_deg"), degrees and throttle.
@@ -53,7 +56,7 @@ def test_twin_finds_the_published_trims(aircraft, bank, climb):
 @pytest.mark.parametrize("aircraft", ["skywalker_x8", "techpod"])
 def test_starts_in_the_published_level_trim_and_stays(aircraft, make_plant):
     altitude = altitude_of(DENSITY[aircraft])
-    plant = make_plant(aircraft=aircraft, altitude=altitude)
+    plant = make_plant(aircraft=aircraft, altitude=altitude, parameters=EVEN)
     expected = TRIMS[aircraft, 0, 0]
     assert plant.get("state.elevator") * DEG == pytest.approx(expected["elevator"], abs=1e-3)
     assert plant.get("state.throttle") == pytest.approx(expected["throttle"], abs=1e-4)
@@ -68,7 +71,7 @@ def test_starts_in_the_published_level_trim_and_stays(aircraft, make_plant):
 @pytest.mark.parametrize("aircraft", ["skywalker_x8", "techpod"])
 def test_climbs_in_the_published_climbing_trim(aircraft, make_plant):
     level = altitude_of(DENSITY[aircraft])
-    plant = make_plant(aircraft=aircraft, altitude=level - 60)
+    plant = make_plant(aircraft=aircraft, altitude=level - 60, parameters=EVEN)
     plant.fly_leg(0, 0, 1e5, 0, level + 500, 15.0)
     while plant.state.altitude < level:
         plant.step(0.05)
@@ -81,7 +84,7 @@ def test_climbs_in_the_published_climbing_trim(aircraft, make_plant):
 
 @pytest.mark.parametrize("aircraft", ["skywalker_x8", "techpod"])
 def test_circles_in_the_turning_trim_of_the_twin(aircraft, make_plant):
-    plant = make_plant(aircraft=aircraft, altitude=altitude_of(DENSITY[aircraft]))
+    plant = make_plant(aircraft=aircraft, altitude=altitude_of(DENSITY[aircraft]), parameters=EVEN)
     plant.fly_orbit(0, 43.0, 43.0, 1, plant.state.altitude, 15.0)
     for _ in range(120):
         plant.step(1.0)
@@ -114,7 +117,7 @@ def test_state_derivative_equals_the_twin(aircraft, seed, make_plant):
     a, b = s["alpha"], s["beta"]
     air = airspeed * np.array([math.cos(a) * math.cos(b), math.sin(b), math.sin(a) * math.cos(b)])
     attitude, rates = (s["bank"], s["pitch"], heading), np.array([s["p"], s["q"], s["r"]])
-    twin = Twin(load_aircraft(aircraft), plant.get("air.density"))
+    twin = Twin(load_aircraft(aircraft), plant.get("air.density"), 9.81 - GRADIENT * plant.state.altitude)
     surfaces = (s["aileron"], s["elevator"], s["rudder"])
     linear, angular, specific = twin.accelerations(air, rates, attitude, surfaces, s["throttle"], wind)
     velocity = dcm(*attitude).T @ air + wind
@@ -154,7 +157,7 @@ def test_nothing_is_lost_without_air(make_plant):
     thin |= {"aircraft.aero.CY_aileron": 0.0, "aircraft.aero.Cn_aileron": 0.0, "aircraft.aero.Cm_q": 0.0}
     thin |= {"aircraft.aero.alpha_max": 1.5, "aircraft.aero.alpha_min": -1.5, "command.mode": 0}
     spin = {"initial.trimmed": 0, "initial.p": 1.0, "initial.q": 0.4, "initial.r": -0.6, "initial.pitch": 0.8}
-    plant = make_plant(parameters=thin | spin, airspeed=25.0)
+    plant = make_plant(parameters=thin | spin | EVEN, airspeed=25.0)
     values = load_aircraft()
     xx, yy, zz, xz = (values[f"aircraft.inertia.{k}"] for k in ("xx", "yy", "zz", "xz"))
     tensor = np.array([[xx, 0, -xz], [0, yy, 0], [-xz, 0, zz]])

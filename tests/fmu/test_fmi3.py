@@ -10,6 +10,7 @@ from fmpy.fmi1 import FMICallException
 from fmpy.fmi3 import FMU3Slave
 
 from fmu.variables import REFERENCE, TABLE
+from fmu.views import VIEWS
 
 
 @pytest.fixture
@@ -60,7 +61,7 @@ def test_bad_choices_are_refused(slave, name, value):
 
 def test_wrong_references_and_types_are_refused(slave):
     with pytest.raises(FMICallException):
-        slave.getFloat64([len(TABLE)])
+        slave.getFloat64([len(TABLE) + len(VIEWS)])
     with pytest.raises(FMICallException):
         slave.getFloat64([REFERENCE["fidelity"]])
     assert "fidelity" in slave.log[-1]
@@ -120,7 +121,10 @@ def test_functions_for_other_interfaces_answer_with_an_error(slave):
         slave.fmi3SetTime(slave.component, 1.0)
     assert "fmi3SetTime" in slave.log[-1]
     with pytest.raises(FMICallException):
-        slave.fmi3GetFMUState(slave.component, ctypes.byref(ctypes.c_void_p()))
+        slave.fmi3EnterConfigurationMode(slave.component)
+    with pytest.raises(FMICallException):
+        slave.fmi3GetContinuousStates(slave.component, (ctypes.c_double * 18)(), 18)
+    assert "other interface" in slave.log[-1]
 
 
 def test_impossible_bodies_are_refused_at_initialisation(slave):

@@ -32,6 +32,11 @@ east_m = 0.0
 north_m = 12000.0
 east_m = 0.0
 """
+ON_A_WAYPOINT = """
+obstacles = [{north_m = 8000.0, east_m = 0.0}]
+vehicle = {fidelity = "kinematic"}
+mission = [{north_m = 0.0, east_m = 0.0}, {north_m = 8000.0, east_m = 0.0}]
+"""
 
 
 def flown(

@@ -86,6 +86,18 @@ def test_options_reach_the_flight(scenario, tmp_path):
     assert (flown.wind.north, flown.wind.east) == (-3.0, 4.0)
 
 
+def test_a_mission_within_the_acceptance_radius_is_over_at_once(tmp_path):
+    short = tmp_path / "short.toml"
+    short.write_text("mission = [{north_m = 0, east_m = 0}, {north_m = 90, east_m = 0}]\n")
+    done = run("fly", short, "--json", "-o", tmp_path / "out")
+    assert done.exit_code == 0
+    summary = json.loads(done.stdout)
+    assert (summary["completed"], summary["flight_time_s"], summary["path_length_m"]) == (True, 0.0, 0.0)
+    assert run("replay", tmp_path / "out").exit_code == 0
+    shown = run("fly", short, "-o", tmp_path / "out")
+    assert (shown.exit_code, "Flown safely" in shown.stdout) == (0, True)
+
+
 def test_the_default_directory_is_numbered(scenario, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for number in (1, 2):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -44,6 +45,18 @@ def test_two_spheres_leave_their_crossing():
 
 def test_an_obstacle_far_above_does_not_count():
     (_, goal) = goals([START, Point(0.0, 0.0, 200.0)], [obstacle(0.0, 0.0, altitude=1300.0)], RULE)
+    assert not goal.replaced
+
+
+@pytest.mark.parametrize("altitude", [1205.0, -805.0])
+def test_an_obstacle_within_the_altitude_tolerance_counts(altitude: float):
+    """1,005 m above or below: 15 m nearer it is a circle of √(1000² − 990²) m."""
+    rule = replace(RULE, altitude_tolerance=15.0)
+    mission = [START, Point(0.0, 50.0, 200.0), Point(0.0, 50.0, 201.0 if altitude < 0.0 else 199.0)]
+    (_, goal, higher) = goals(mission, [obstacle(0.0, 0.0, altitude=altitude)], rule)
+    assert math.hypot(*goal.point) == pytest.approx(math.sqrt(1000.0**2 - 990.0**2) + 134.0)
+    assert math.hypot(*higher.point) == pytest.approx(math.sqrt(1000.0**2 - 991.0**2) + 134.0)
+    (_, goal) = goals(mission[:2], [obstacle(0.0, 0.0, altitude=1215.0)], rule)
     assert not goal.replaced
 
 

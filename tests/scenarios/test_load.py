@@ -163,9 +163,15 @@ def test_invalid_toml_says_where():
     assert "line 2" in complaints("a = 1\nb = = 1")
 
 
+@pytest.mark.parametrize(("appears", "period"), [(0.0, 1.0), (0.001, 1.0), (1.0, 1.0), (5.0, 10.0)])
+def test_the_start_may_not_be_inside_what_appears_within_the_first_sweep(appears: float, period: float):
+    text = f"obstacles = [{{north_m = 10.0, east_m = 0.0, appears_at_s = {appears}}}]\n"
+    assert "the start is inside" in complaints(f"radar = {{period_s = {period}}}\n" + text + MISSION)
+
+
 def test_a_pop_up_over_the_start_is_no_mistake():
-    scenario = parse("obstacles = [{north_m = 10.0, east_m = 0.0, appears_at_s = 600.0}]\n" + MISSION)
-    assert scenario.obstacles[0].appears_at == 600.0
+    scenario = parse("obstacles = [{north_m = 10.0, east_m = 0.0, appears_at_s = 1.1}]\n" + MISSION)
+    assert scenario.obstacles[0].appears_at == 1.1
 
 
 def test_unknown_names_and_missing_files(tmp_path):

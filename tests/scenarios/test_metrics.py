@@ -97,6 +97,25 @@ def test_lengths_and_passes_are_horizontal():
     assert first_pass(flown, (1500.0, 2000.0), 10.0, after=501.0) is None
 
 
+def test_a_track_of_one_sample_is_a_point():
+    here = track([7.0], [(300.0, 400.0, 200.0)])
+    assert nearest_pass(here, (0.0, 0.0)) == pytest.approx(500.0)
+    assert first_pass(here, (0.0, 0.0), 500.0) == pytest.approx(7.0)
+    assert first_pass(here, (0.0, 0.0), 499.0) is None
+    assert first_pass(here, (0.0, 0.0), 500.0, after=8.0) is None
+    other = MovingTrack(9, 50.0, np.array([(300.0, 0.0, 200.0)]))
+    still, moving = separations(here, [obstacle()], [other])
+    assert (still.distance, still.entries) == (pytest.approx(500.0), 1)
+    assert (moving.distance, moving.entries) == (pytest.approx(400.0), 0)
+    assert path_length(here.positions) == 0.0
+
+
+def test_a_pass_is_never_before_the_time_asked_for():
+    there = track([0.0, 10.0], [(-5000.0, 0.0, 200.0), (5000.0, 0.0, 200.0)])
+    assert first_pass(there, (0.0, 0.0), 600.0, after=5.5) == pytest.approx(5.5)
+    assert first_pass(there, (0.0, 0.0), 600.0, after=6.0) is None
+
+
 coordinate = st.floats(-5000.0, 5000.0)
 
 

@@ -21,7 +21,15 @@ from tests.scenarios.flights import encounter
 SUMMARY_KEYS = [
     *("completed", "violations", "min_separation_m", "min_margin_m", "closest_obstacle"),
     *("violation_radius_m", "path_length_m", "plan_length_m", "optimum_length_m", "flight_time_s"),
-    *("waypoints_replaced", "replans", "decision_ms", "wall_s", "real_time_factor"),
+    *(
+        "waypoints_replaced",
+        "replans",
+        "state_of_charge",
+        "reserve_used",
+        "decision_ms",
+        "wall_s",
+        "real_time_factor",
+    ),
     *("seed", "preset", "version"),
 ]
 

@@ -1,0 +1,56 @@
+"""What the hangar tells of the vehicle under test: its battery, under the sun of place and time."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from datetime import UTC, datetime
+
+import pytest
+
+from scenarios.hangar import Hangar
+from scenarios.load import parse
+from scenarios.run import preset
+from scenarios.score import score
+from scenarios.show import _verdict
+from tests.scenarios.flights import ENCOUNTER, encounter
+
+
+def after(hours, begin):
+    """Energy after some hours of straight flight from a time (UTC) on; home is at 76.6 degrees east."""
+    scenario = replace(parse(ENCOUNTER), start_time_utc=begin)
+    with Hangar(scenario, preset("default")) as hangar:
+        vehicle = hangar.own_vehicle()
+        for _ in range(hours):
+            vehicle.plant.step(3600.0)
+        return hangar.energy()
+
+
+def test_the_sun_carries_the_flight_by_day():
+    energy = after(3, datetime(2020, 3, 21, 4, 0, tzinfo=UTC))
+    assert not energy.reserve_used
+    assert energy.state_of_charge > 0.95
+
+
+def test_a_night_flight_eats_the_reserve_and_the_summary_says_so():
+    energy = after(3, datetime(2020, 3, 21, 15, 0, tzinfo=UTC))
+    # 3 h x 73.7 W / 0.97 of 250 Wh leave 9 %, and the reserve is 20 %
+    assert energy.reserve_used
+    assert energy.state_of_charge == pytest.approx(1 - 3 * 73.7 / 0.97 / 250, abs=0.02)
+    flown, _ = encounter()
+    judged = score(flown, energy)
+    assert judged.summary["reserve_used"] is True
+    assert "reserve was used" in _verdict(flown, judged)
+
+
+def test_nothing_is_told_of_a_battery_that_was_not_asked():
+    flown, judged = encounter()
+    assert judged.summary["state_of_charge"] is None
+    assert "reserve" not in _verdict(flown, judged)
+
+
+def test_energy_needs_a_vehicle():
+    with (
+        Hangar(parse(ENCOUNTER), preset("default")) as hangar,
+        pytest.raises(ValueError, match="own_vehicle"),
+    ):
+        hangar.energy()
