@@ -155,8 +155,9 @@ def _across_edges(start: Floats, step: Floats, corners: Floats) -> list[float]:
     between = corners - start
     denominator = step[0] * edges[:, 1] - step[1] * edges[:, 0]
     safe = np.where(denominator == 0.0, 1.0, denominator)
-    along = (between[:, 0] * edges[:, 1] - between[:, 1] * edges[:, 0]) / safe
-    on_edge = (between[:, 0] * step[1] - between[:, 1] * step[0]) / safe
+    with np.errstate(over="ignore", invalid="ignore"):  # almost parallel: far beyond the ends
+        along = (between[:, 0] * edges[:, 1] - between[:, 1] * edges[:, 0]) / safe
+        on_edge = (between[:, 0] * step[1] - between[:, 1] * step[0]) / safe
     hit = (denominator != 0.0) & (along >= 0.0) & (along <= 1.0) & (on_edge >= 0.0) & (on_edge <= 1.0)
     found: list[float] = along[hit].tolist()
     return found

@@ -76,12 +76,12 @@ class Hangar:
         if not self._shared:
             self._library.close()
 
-    def own_vehicle(self, mission: Sequence[Point]) -> SimulatedVehicle:
-        """A vehicle under test, at the start of its mission."""
+    def own_vehicle(self, mission: Sequence[Point] | None = None) -> SimulatedVehicle:
+        """A vehicle under test, at the start of its mission; the scenario's unless another is given."""
         settings = self._scenario.vehicle
         radius = settings.acceptance_radius or self._parameters.acceptance_radius
         vehicle = self._vehicle(
-            mission,
+            self._scenario.mission if mission is None else mission,
             airspeed=settings.airspeed,
             fidelity=settings.fidelity,
             acceptance_radius=radius,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -61,15 +61,14 @@ def separations(
     where the obstacle moves. Nothing is sampled.
     """
     found = []
+    blocks = _Blocks(track.positions)
     for obstacle in obstacles:
         part = _from_time(track, obstacle.appears_at)
         if part is None:
             continue
         times, positions = part
-        centre = np.array([obstacle.north, obstacle.east, obstacle.altitude])
-        found.append(
-            _separation(obstacle.id, obstacle.safety_radius, times, positions - centre, moving=False)
-        )
+        pieces = blocks if positions is track.positions else _Blocks(positions)
+        found.append(_from_still(obstacle, times, positions, pieces))
     for mover in traffic:
         relative = track.positions - mover.positions
         if np.isfinite(relative[:, 0]).any():
@@ -107,6 +106,46 @@ def nearest_pass(track: Track, point: tuple[float, float]) -> float:
     """Least horizontal distance of the continuous track from a point [m]."""
     distances, _ = _segment_minima(track.positions[:, :2] - np.asarray(point))
     return float(distances.min())
+
+
+class _Blocks:
+    """A track in pieces with a sphere about each, so that those far from an obstacle need no look."""
+
+    LENGTH = 128
+
+    def __init__(self, positions: Floats) -> None:
+        last = max(len(positions) - 1, 1)
+        self.begins = np.arange(0, last, self.LENGTH)
+        self.ends = np.minimum(self.begins + self.LENGTH, len(positions) - 1)  # shared with the next piece
+        self.centres = 0.5 * (positions[self.begins] + positions[self.ends])
+        apart = positions - np.repeat(self.centres, np.diff(np.append(self.begins, len(positions))), axis=0)
+        distances = np.sqrt(np.einsum("ij,ij->i", apart, apart))
+        shared = positions[self.ends] - self.centres
+        self.radii = np.maximum(
+            np.maximum.reduceat(distances, self.begins), np.sqrt(np.einsum("ij,ij->i", shared, shared))
+        )
+
+    def worth_a_look(self, centre: Floats, radius: float) -> list[tuple[int, int]]:
+        """First and last sample of each run of pieces that may be nearest, or inside a sphere."""
+        away = self.centres - centre
+        distances = np.sqrt(np.einsum("ij,ij->i", away, away))
+        limit = max(float((distances + self.radii).min()), radius)
+        kept = np.concatenate(([False], distances - self.radii <= limit, [False]))
+        firsts = np.flatnonzero(kept[1:] & ~kept[:-1])
+        lasts = np.flatnonzero(~kept[1:] & kept[:-1]) - 1
+        return [(int(self.begins[a]), int(self.ends[b])) for a, b in zip(firsts, lasts, strict=True)]
+
+
+def _from_still(obstacle: Obstacle, times: Floats, positions: Floats, blocks: _Blocks) -> Separation:
+    """Separation from something that stands still: what is left out is outside its sphere and further."""
+    centre = np.array([obstacle.north, obstacle.east, obstacle.altitude])
+    radius = obstacle.safety_radius
+    runs = [
+        _separation(obstacle.id, radius, times[a : b + 1], positions[a : b + 1] - centre, moving=False)
+        for a, b in blocks.worth_a_look(centre, radius)
+    ]
+    nearest = min(runs, key=lambda one: one.distance)
+    return replace(nearest, entries=sum(one.entries for one in runs))
 
 
 def _separation(identity: int, radius: float, times: Floats, relative: Floats, *, moving: bool) -> Separation:

@@ -106,10 +106,12 @@ def score(flown: Flown, energy: Energy | None = None) -> Score:
         figures = fleet_figures([vehicle.figures for vehicle in vehicles])
         figures["decision_ms"] = _decision_times(flown.decisions)
     duration = figures["flight_time_s"]
+    decided = figures["decision_ms"]
     summary = {
-        **figures,
+        **{key: value for key, value in figures.items() if key != "decision_ms"},
         "state_of_charge": None if energy is None else round(energy.state_of_charge, 4),
         "reserve_used": None if energy is None else energy.reserve_used,
+        "decision_ms": decided,
         "wall_s": round(wall, 3),
         "real_time_factor": round(duration / wall, 1) if wall > 0.0 else None,
         "seed": flown.seed,

@@ -63,6 +63,8 @@ def table(rows: Sequence[Row], campaign: Campaign) -> None:
     """Print the figures of a campaign for somebody who has never seen one."""
     kind = KINDS[campaign.kind]
     console = Console()
+    if not console.is_terminal:
+        console.width = max(console.width, WIDEST)
     console.print(
         f"{campaign.kind}: {kind.words}; {campaign.runs} worlds each, seed {campaign.seed}, "
         f"{campaign.fidelity} vehicle, preset {campaign.parameters.name}",
@@ -77,8 +79,6 @@ def table(rows: Sequence[Row], campaign: Campaign) -> None:
     columns = [_traffic_column(row) if kind.traffic else _field_column(row) for row in rows]
     for number, name in enumerate(name for name, _ in columns[0]):
         lines.add_row(name, *(column[number][1] for column in columns))
-    if not console.is_terminal:
-        console.width = max(console.width, WIDEST)
     console.print(lines)
     console.print("Brackets: 95 % intervals (Wilson; risk ratios paired, Bonett and Price).", highlight=False)
 

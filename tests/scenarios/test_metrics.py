@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -132,3 +133,17 @@ def test_no_sampled_point_is_nearer_than_the_separation(points, data):
     inside = distances < near.radius
     sampled_entries = int(inside[0]) + int((inside[1:] & ~inside[:-1]).sum())
     assert near.entries >= sampled_entries
+
+
+@given(st.integers(0, 2**32 - 1), st.integers(2, 700))
+def test_leaving_out_far_pieces_changes_nothing(seed, samples):
+    rng = np.random.default_rng(seed)
+    steps = rng.normal(0.0, 60.0, (samples, 3)) + np.array((5.0, 0.0, 0.0))
+    positions = np.cumsum(steps, axis=0)
+    still = np.zeros(samples)
+    track = Track("own", np.arange(float(samples)), positions, still, still, still)
+    north, east, altitude = positions[rng.integers(samples)] + rng.normal(0.0, 300.0, 3)
+    (found,) = separations(track, [Obstacle(1, north, east, altitude, 250.0)])
+    whole = MovingTrack(1, 250.0, np.tile((north, east, altitude), (samples, 1)))
+    (expected,) = separations(track, [], [whole])
+    assert found == replace(expected, moving=False)
