@@ -144,15 +144,13 @@ class Agent:
         if not (depth > 0.0).any():
             self._escaping = False
             return None
-        if self._escaping:
+        if self._escaping and route.waypoints[0].item is None:
             return CLEAR
         self._escaping = True
         deepest = int(np.argmax(depth))
-        away = offset[deepest] / max(float(distance[deepest]), 1e-9)
-        if distance[deepest] < 1.0:
-            away = np.array([math.cos(own.course), math.sin(own.course)])
-        reach = float(circles.keep[deepest]) + self._performance.turn_room
-        point = circles.centres[deepest] + reach * away
+        point = self._way_out((own.north, own.east), circles)
+        if point is None:
+            return None
         threat = Threat(
             ids=(int(known.ids[circles.rows[deepest]]),),
             leg=0,
@@ -161,7 +159,7 @@ class Agent:
             clearance=float(distance[deepest]),
             required=float(circles.keep[deepest]),
         )
-        waypoint = Waypoint(float(point[0]), float(point[1]), own.altitude)
+        waypoint = Waypoint(point[0], point[1], own.altitude)
         own_items = tuple(w for w in route.waypoints if w.item is not None)
         return Detour(
             why=f"{obstacles(threat.ids)} appeared round the vehicle; leave by the shortest way",
@@ -170,6 +168,15 @@ class Agent:
             route=(waypoint, *own_items),
             waypoint=waypoint,
         )
+
+    def _way_out(self, here: tuple[float, float], circles: Circles) -> tuple[float, float] | None:
+        """The nearest point with room to turn that is reached without coming nearer to anything."""
+        passing = np.maximum(np.minimum(circles.keep, _distances(circles.centres, here) - 1.0), 0.0)
+        for room in (self._performance.turn_room, 0.0):
+            point = nearest_free(here, here, circles.centres, circles.keep + room, passing)
+            if point is not None:
+                return point
+        return None
 
     # --- mission waypoints that cannot be reached -----------------------------------------------------
 

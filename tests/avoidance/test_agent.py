@@ -10,6 +10,7 @@ from avoidance.agent import Agent
 from avoidance.flown import flown_segments
 from avoidance.geometry import segments_clearance
 from avoidance.parameters import DEFAULT, PRESETS
+from avoidance.prediction import route_separation
 from tests.avoidance.worlds import PERFORMANCE, ownship, route, scan
 
 
@@ -109,3 +110,58 @@ def test_the_same_inputs_give_the_same_decision() -> None:
     first, second = decide([(8000.0, 300.0)]), decide([(8000.0, 300.0)])
     assert first.route == second.route
     assert first.why == second.why
+
+
+def test_a_sphere_that_appears_round_the_vehicle_is_left_by_the_shortest_way() -> None:
+    decision = decide([(-200.0, 300.0)], scans=1)
+    assert isinstance(decision, Detour)
+    assert decision.waypoint.north > 0.0
+    assert decision.waypoint.east < 0.0  # straight away from its centre
+    assert np.hypot(decision.waypoint.north + 200.0, decision.waypoint.east - 300.0) > 1000.0
+
+
+def test_the_way_out_of_a_sphere_does_not_lead_into_the_next() -> None:
+    wall = [(-900.0, -1200.0), (900.0, -1200.0), (0.0, 600.0)]
+    decision = decide(wall, scans=1)
+    assert isinstance(decision, Detour)
+    away = [np.hypot(decision.waypoint.north - n, decision.waypoint.east - e) for n, e in wall]
+    assert min(away) > 1000.0
+
+
+def test_a_new_mission_replaces_what_is_remembered_of_the_old_one() -> None:
+    agent = Agent(PERFORMANCE)
+    nothing = scan([], 0.0)
+    agent.decide(ownship(), route((40_000.0, 0.0)), nothing)
+    way = route((5000.0, 30_000.0))
+    for second in range(1, 4):
+        decision = agent.decide(ownship(time=second), way, scan([(5000.0, 30_200.0)], float(second)))
+        if isinstance(decision, Replace):
+            break
+    assert isinstance(decision, Replace)
+    assert decision.waypoint is not None
+    assert np.hypot(decision.waypoint.north - 5000.0, decision.waypoint.east - 30_000.0) < 1500.0
+
+
+def test_a_waypoint_moved_for_a_false_return_is_put_back() -> None:
+    agent = Agent(PERFORMANCE)
+    way = route((1500.0, 0.0), (40_000.0, 0.0))
+    for second in range(8):
+        seen = scan([(1500.0, 300.0)] if second == 0 else [], float(second))
+        decision = agent.decide(ownship(time=second), way, seen)
+        if decision.route is not None:
+            way = Route(way.origin, decision.route)
+    assert way.waypoints[0] == Waypoint(1500.0, 0.0, 200.0, item=1)
+
+
+def test_an_obstacle_and_an_intruder_together() -> None:
+    """A route round what stands still is no answer to what moves."""
+    agent = Agent(PERFORMANCE)
+    table = np.array([[9000.0, 300.0, 200.0], [9500.0, 0.0, 200.0]])
+    for second in range(4):
+        moved = table - np.array([[0.0, 0.0, 0.0], [15.0 * second, 0.0, 0.0]])
+        seen = RadarScan(float(second), np.array([1, 2]), moved, np.array([1000.0, np.nan]))
+        decision = agent.decide(ownship(15.0 * second, time=second), route((40_000.0, 0.0)), seen)
+    assert decision.route is not None
+    points = np.array([(45.0, 0.0), *((w.north, w.east) for w in decision.route)])
+    place, velocity = np.array([[9455.0, 0.0]]), np.array([[-15.0, 0.0]])
+    assert route_separation(points[None], 15.0, place, velocity)[0, 0] > 1000.0
