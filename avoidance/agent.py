@@ -8,7 +8,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from avoidance.free_space import nearest_free
+from avoidance.free_space import free_candidates, nearest_free
+from avoidance.geometry import segments_clearance
 from avoidance.known import Circles, Known, keep_what_can_be_kept, known_obstacles
 from avoidance.ladder import Plan, way_round, widest_way
 from avoidance.parameters import DEFAULT, Parameters
@@ -39,6 +40,8 @@ HOLD_RADII = 1.5
 """Radius of a holding orbit in turn radii."""
 PATIENCE = 8
 """A mission item that no route leads to is skipped after so many attempts from a holding orbit."""
+MOST_WAYS_OUT = 200
+"""Points looked at for a way out of a sphere."""
 RETRY = 5.0
 """While holding, or while a later leg is blocked, a way is looked for again after this time [s]."""
 
@@ -114,6 +117,8 @@ class Agent:
         decision = self._decide(own, route, known)
         if isinstance(decision, Keep | Hold):
             self._checked_route, self._checked = route, picture.version
+        if decision.route is not None:
+            self._holding = False  # a new route ends a hold
         return decision
 
     def _decide(self, own: Ownship, route: Route, known: Known) -> Decision:
@@ -170,12 +175,15 @@ class Agent:
         )
 
     def _way_out(self, here: tuple[float, float], circles: Circles) -> tuple[float, float] | None:
-        """The nearest point with room to turn that is reached without coming nearer to anything."""
-        passing = np.maximum(np.minimum(circles.keep, _distances(circles.centres, here) - 1.0), 0.0)
+        """The nearest point, with room to turn if there is one, reached straight without going deeper."""
+        present = np.minimum(circles.keep, _distances(circles.centres, here)) - 1.0
         for room in (self._performance.turn_room, 0.0):
-            point = nearest_free(here, here, circles.centres, circles.keep + room, passing)
-            if point is not None:
-                return point
+            points = free_candidates(here, circles.centres, circles.keep + room)[:MOST_WAYS_OUT]
+            starts = np.broadcast_to(np.array(here), points.shape)
+            deeper = segments_clearance(starts, points, circles.centres) < present
+            straight = np.flatnonzero(~deeper.any(axis=1))
+            if len(straight):
+                return float(points[straight[0], 0]), float(points[straight[0], 1])
         return None
 
     # --- mission waypoints that cannot be reached -----------------------------------------------------
