@@ -14,8 +14,8 @@ class FmuBuildHook(BuildHookInterface[Any]):
     """Compiles and packs the FMUs for wheels; an editable install gets them in the source tree.
 
     The machine's own C compiler is used; only where there is none, ziglang is asked for (it is large). The
-    wheel is tagged for this platform then. Where `python -m fmu.build --all` has left files with the libraries
-    of all platforms in the source tree, the wheel takes those and is tagged `py3-none-any`.
+    wheel is tagged for this platform then. Where `python -m fmu.build --all` has left files with the
+    libraries of all platforms in the source tree, the wheel takes those and is tagged `py3-none-any`.
     """
 
     PLUGIN_NAME = "custom"
