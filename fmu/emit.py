@@ -83,7 +83,10 @@ def build_description() -> str:
     root = ET.Element("fmiBuildDescription", fmiVersion="3.0")
     configuration = ET.SubElement(root, "BuildConfiguration", modelIdentifier=MODEL)
     files = ET.SubElement(
-        configuration, "SourceFileSet", language="C99", compilerOptions="-ffp-contract=off -fno-math-errno"
+        configuration,
+        "SourceFileSet",
+        language="C99",
+        compilerOptions="-ffp-contract=off -fno-math-errno -fno-tree-vectorize",
     )
     for name in (*SOURCES, GENERATED):
         ET.SubElement(files, "SourceFile", name=name)

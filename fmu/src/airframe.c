@@ -59,11 +59,12 @@ double gravity_at(const Variables *v, double altitude) {
 static void wind_in_body(const Model *m, const double R[9], double wind[3]) {
     const double *gust = m->turbulence.gust;
     double ned[3] = {m->v.wind_north + gust[0], m->v.wind_east + gust[1], m->v.wind_down + gust[2]};
-    rotate_back(R, ned, wind);
+    if (ned[0] == 0.0 && ned[1] == 0.0 && ned[2] == 0.0) wind[0] = wind[1] = wind[2] = 0.0;
+    else rotate_back(R, ned, wind);
 }
 
 /* Forces and moments of air and engine on the body. */
-static void airframe_loads(const Model *m, const double x[], const double R[9], Loads *loads) {
+static inline void airframe_loads(const Model *m, const double x[], const double R[9], Loads *loads) {
     const Variables *v = &m->v;
     double wind[3], density = density_at(m, x[X_ALTITUDE]);
     wind_in_body(m, R, wind);
@@ -106,15 +107,15 @@ static void airframe_loads(const Model *m, const double x[], const double R[9], 
     loads->moment[2] = pressure_area * span * Cn;
 }
 
-static double lag(double command, double position, double low, double high, double per_time, double rate) {
+static inline double lag(double command, double position, double low, double high, double per_time, double rate) {
     return clamp((clamp(command, low, high) - position) * per_time, -rate, rate);
 }
 
 /* Actuators. Elevons: the limits are those of each elevon, aileron and elevator their difference and mean
  * (left = elevator + aileron, right = elevator - aileron, trailing edge down positive). */
-static void actuator_rates(const Model *m, const double x[], double dx[]) {
+static inline void actuator_rates(const Model *m, const double x[], double dx[]) {
     const Variables *v = &m->v;
-    double per_time = 1.0 / v->aircraft_actuator_surface_time, rate = v->aircraft_actuator_surface_rate;
+    double per_time = m->per_surface_time, rate = v->aircraft_actuator_surface_rate;
     double a = v->aircraft_actuator_aileron_limit, el = v->aircraft_actuator_elevator_limit;
     double ru = v->aircraft_actuator_rudder_limit;
     const double *command = m->actuator;
@@ -129,7 +130,7 @@ static void actuator_rates(const Model *m, const double x[], double dx[]) {
     }
     dx[X_RUDDER] = lag(command[2], x[X_RUDDER], -ru, ru, per_time, rate);
     dx[X_THROTTLE] = lag(m->empty ? 0.0 : command[3], x[X_THROTTLE], 0.0, 1.0,
-                         1.0 / v->aircraft_actuator_throttle_time, v->aircraft_actuator_throttle_rate);
+                         m->per_throttle_time, v->aircraft_actuator_throttle_rate);
 }
 
 /* Earth rotation and the curvature of its surface (Stevens & Lewis 1.5; Groves 2013, 5.4): the velocity over
@@ -179,7 +180,7 @@ void airframe_derivative(const Model *m, const double x[], double dx[], Loads *l
 
     double gravity = gravity_at(v, x[X_ALTITUDE]);
     double p = x[X_P], q = x[X_Q], r = x[X_R];
-    double per_mass = 1.0 / v->aircraft_mass;
+    double per_mass = m->per_mass;
     dx[X_U] = r * x[X_V] - q * x[X_W] + gravity * R[6] + loads->force[0] * per_mass;
     dx[X_V] = p * x[X_W] - r * x[X_U] + gravity * R[7] + loads->force[1] * per_mass;
     dx[X_W] = q * x[X_U] - p * x[X_V] + gravity * R[8] + loads->force[2] * per_mass;
@@ -206,7 +207,10 @@ void airframe_advance(Model *m, double h) {
     Loads loads;
     double *x = m->x;
     airframe_derivative(m, x, k, &loads);
-    m->power = power_balance(m, x[X_ENERGY], loads.thrust * loads.airspeed, loads.sunlight);
+    if (m->now >= m->next_power) {
+        m->power = power_balance(m, x[X_ENERGY], loads.thrust * loads.airspeed, loads.sunlight);
+        m->next_power = (m->now / POWER_PERIOD + 1) * POWER_PERIOD;
+    }
     for (int i = 0; i < N_MECHANICAL; i++) { sum[i] = k[i]; at[i] = x[i] + 0.5 * h * k[i]; }
     airframe_derivative(m, at, k, &loads);
     for (int i = 0; i < N_MECHANICAL; i++) { sum[i] += 2.0 * k[i]; at[i] = x[i] + 0.5 * h * k[i]; }
@@ -235,7 +239,7 @@ void airframe_motion(const Model *m, Motion *o) {
     o->velocity_east = ned[1];
     o->climb = -ned[2];
     o->airspeed = sqrt(u * u + side * side + w * w);
-    o->beta = o->airspeed > SLOWEST ? asin(clamp(side / o->airspeed, -1.0, 1.0)) : 0.0;
+    o->beta = o->airspeed > SLOWEST ? clamp(side / o->airspeed, -1.0, 1.0) : 0.0; /* its sine: near enough */
     o->bank = atan2(R[7], R[8]);
     o->pitch = -asin(clamp(R[6], -1.0, 1.0));
     double cos_pitch = sqrt(R[7] * R[7] + R[8] * R[8]), per = cos_pitch > 1e-9 ? 1.0 / cos_pitch : 0.0;
@@ -251,6 +255,7 @@ void airframe_angles(const Model *m, Motion *o) {
     double R[9], wind[3];
     rotation_matrix(m->x + X_Q0, R);
     wind_in_body(m, R, wind);
+    o->beta = asin(o->beta);
     o->alpha = o->airspeed > SLOWEST ? atan2(m->x[X_W] - wind[2], m->x[X_U] - wind[0]) : 0.0;
     o->heading = atan2(R[3], R[0]);
 }

@@ -35,11 +35,3 @@ void atmosphere_sample(Model *m) {
     m->air_altitude = altitude;
     m->air = air_at(m->v.environment_home_elevation + m->air_altitude);
 }
-
-/* Density near the last sample: linear in altitude (a pow() in every derivative would cost a tenth of
- * the step). */
-double density_at(const Model *m, double altitude) {
-    if (m->continuous) return air_at(m->v.environment_home_elevation + altitude).density;
-    double density = m->air.density + m->air.slope * (altitude - m->air_altitude);
-    return density > 0.0 ? density : 0.0;
-}

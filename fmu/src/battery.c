@@ -54,7 +54,7 @@ Power power_balance(const Model *m, double energy, double shaft_power, double su
     return power;
 }
 
-/* Charge changes slowly: its rate at the beginning of a step of the motion holds over it. */
+/* Charge changes slowly: its rate is held between balances (100 ms, on the model's own grid). */
 void battery_advance(Model *m, const Power *power, double h) {
     m->x[X_ENERGY] = clamp(m->x[X_ENERGY] + h * power->stored, 0.0, m->v.aircraft_battery_capacity);
 }

@@ -72,8 +72,8 @@ void model_indicators(const Model *m, double z[N_INDICATORS]) {
     if (m->flight == FLIGHT_LAUNCHED) z[INDICATOR_LAUNCH] = launch_indicator(m);
     double capacity = m->v.aircraft_battery_capacity;
     if (capacity > 0.0 && !m->empty) {
-        double left = m->x[X_ENERGY] / capacity;
-        z[INDICATOR_BATTERY] = m->on_reserve ? left : left - m->v.aircraft_battery_reserve;
+        double mark = m->on_reserve ? 0.0 : m->v.aircraft_battery_reserve * capacity;
+        z[INDICATOR_BATTERY] = (m->x[X_ENERGY] - mark) * 1e-5;
     }
 }
 

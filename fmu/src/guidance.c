@@ -80,7 +80,7 @@ static double bank_for(const Model *m, double lateral_acceleration) {
 
 /* Look-ahead distance [m] for a damping and period (Park et al. 2004; Curry's form in ArduPilot). */
 static double l1_distance(const Variables *v, double ground_speed) {
-    return v->guidance_l1_damping * v->guidance_l1_period * ground_speed / PI;
+    return v->guidance_l1_damping * v->guidance_l1_period * ground_speed * (1.0 / PI);
 }
 
 /* Lateral acceleration that turns the ground velocity by an angle: K V2/L1 sin(angle), K = 4 damping2, and no
@@ -100,7 +100,7 @@ static double bank_by_l1(Model *m, const LegGeometry *l) {
     if (speed < 0.1) speed = 0.1;
     double distance = l1_distance(&m->v, speed);
     double si = -clamp(l->cross_track / distance, -STEEPEST, STEEPEST), ci = sqrt(1.0 - si * si); /* intercept */
-    double sc = l->cross_speed / speed, cc = l->along_speed / speed;                              /* course */
+    double per = 1.0 / speed, sc = l->cross_speed * per, cc = l->along_speed * per;               /* course */
     return bank_for(m, l1_acceleration(m, speed, distance, si * cc - ci * sc, ci * cc + si * sc));
 }
 

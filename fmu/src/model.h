@@ -25,6 +25,9 @@
 #define GUIDANCE_PERIOD_6DOF INT64_C(10000000)
 #define GUIDANCE_PERIOD_KINEMATIC INT64_C(100000000)
 
+/* Period over which the battery's power is held [ns]. */
+#define POWER_PERIOD INT64_C(100000000)
+
 enum { MODE_DIRECT, MODE_LEG, MODE_ORBIT };
 enum { LAW_PAPER, LAW_L1 };
 enum { FIDELITY_6DOF, FIDELITY_KINEMATIC };
@@ -136,6 +139,7 @@ typedef struct {
 typedef struct {
     Variables v;
     InertiaConstants inertia;
+    double per_mass, per_surface_time, per_throttle_time; /* inverses: a division costs more than a product */
     Trim trim;
     double x[N_STATES];        /* state of either fidelity, and the battery's */
     double actuator[4];        /* commands to aileron, elevator, rudder, throttle */
@@ -153,6 +157,7 @@ typedef struct {
     int64_t now;               /* time since the start [ns]: does not drift */
     int64_t next_sample;       /* next call of the guidance [ns] */
     int64_t next_sun;          /* next position of the sun [ns] */
+    int64_t next_power;        /* next balance of electric power [ns] */
     int flight;                /* FLIGHT_... */
     int events;                /* EVENT_... that have happened and not been told */
     bool clear_of_ground;      /* has been high enough for a contact to count */
@@ -165,14 +170,12 @@ typedef struct {
 /* atmosphere.c */
 Air air_at(double altitude);
 void atmosphere_sample(Model *m);
-double density_at(const Model *m, double altitude);
 
 /* turbulence.c */
 void turbulence_reset(Model *m);
 void turbulence_sample(Model *m, const Motion *motion, double period);
 
 /* powertrain.c */
-double thrust(const Variables *v, double throttle, double airspeed, double density);
 double throttle_for(const Variables *v, double thrust_wanted, double airspeed, double density);
 
 /* sun.c, battery.c */
@@ -250,6 +253,23 @@ static inline void rotate(const double R[9], const double b[3], double ned[3]) {
 
 static inline void rotate_back(const double R[9], const double n[3], double b[3]) {
     for (int i = 0; i < 3; i++) b[i] = R[i] * n[0] + R[3 + i] * n[1] + R[6 + i] * n[2];
+}
+
+/* Density near the last sample: linear in altitude (a pow() in every derivative would cost a tenth of the step). */
+static inline double density_at(const Model *m, double altitude) {
+    if (m->continuous) return air_at(m->v.environment_home_elevation + altitude).density;
+    double density = m->air.density + m->air.slope * (altitude - m->air_altitude);
+    return density > 0.0 ? density : 0.0;
+}
+
+/* Thrust [N] along the body's forward axis for a throttle (0 to 1).
+ * Disc: T = 1/2 rho S C Vd (Vd - Va), Vd = Va + throttle (k - Va) (Fitzpatrick 2013, Eqs. 4-6).
+ * Linear: T = throttle * Tmax. */
+static inline double thrust(const Variables *v, double throttle, double airspeed, double density) {
+    if (v->aircraft_propulsion_model == PROPULSION_LINEAR) return throttle * v->aircraft_propulsion_max_thrust;
+    double added = throttle * (v->aircraft_propulsion_motor_speed - airspeed);
+    double disc = v->aircraft_propulsion_disc_area * v->aircraft_propulsion_coefficient;
+    return 0.5 * density * disc * (airspeed + added) * added;
 }
 
 static inline double wrap(double angle) {  /* into -pi .. pi, for angles within a few turns */

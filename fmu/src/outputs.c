@@ -9,16 +9,14 @@ void model_derivative(Model *m, double dx[N_STATES]) {
     Loads loads;
     model_surfaces(m);
     airframe_derivative(m, m->x, dx, &loads);
-    m->power = power_balance(m, m->x[X_ENERGY], loads.thrust * loads.airspeed, loads.sunlight);
-    dx[X_ENERGY] = m->power.stored;
+    dx[X_ENERGY] = power_balance(m, m->x[X_ENERGY], loads.thrust * loads.airspeed, loads.sunlight).stored;
 }
 
-static void airframe_outputs(Model *m) {
+static Power airframe_outputs(Model *m) {
     Variables *v = &m->v;
     double dx[N_STATES];
     Loads loads;
     airframe_derivative(m, m->x, dx, &loads);
-    m->power = power_balance(m, m->x[X_ENERGY], loads.thrust * loads.airspeed, loads.sunlight);
     memcpy(&v->state_quaternion_w, m->x + X_Q0, 4 * sizeof(double));
     memcpy(&v->state_u, m->x + X_U, 3 * sizeof(double));
     memcpy(&v->state_aileron, m->x + X_AILERON, 4 * sizeof(double));
@@ -29,10 +27,11 @@ static void airframe_outputs(Model *m) {
     v->sensor_specific_force_z = loads.force[2] * per_mass;
     v->engine_thrust = loads.thrust;
     v->state_stalled = loads.stalled;
+    return power_balance(m, m->x[X_ENERGY], loads.thrust * loads.airspeed, loads.sunlight);
 }
 
 /* The kinematic aircraft turns without sideslip and feels its lift along body up. */
-static void kinematic_outputs(Model *m, const Motion *o) {
+static Power kinematic_outputs(Model *m, const Motion *o) {
     Variables *v = &m->v;
     double q[4], R[9], ned[3] = {o->velocity_north, o->velocity_east, -o->climb}, body[3];
     quaternion_from_euler(o->bank, o->pitch, o->heading, q);
@@ -48,6 +47,7 @@ static void kinematic_outputs(Model *m, const Motion *o) {
     v->sensor_specific_force_z = -gravity / cos(o->bank);
     v->engine_thrust = 0.0;
     v->state_stalled = 0.0;
+    return m->power;
 }
 
 static void motion_outputs(Variables *v, const Motion *o) {
@@ -82,14 +82,14 @@ static void air_outputs(Model *m, const Motion *o) {
     memcpy(&v->air_gust_north, m->turbulence.gust, 3 * sizeof(double));
 }
 
-static void power_outputs(Model *m) {
+static void power_outputs(Model *m, const Power *power) {
     Variables *v = &m->v;
     double capacity = v->aircraft_battery_capacity;
     v->battery_energy = m->x[X_ENERGY];
     v->battery_state_of_charge = capacity > 0.0 ? m->x[X_ENERGY] / capacity : 0.0;
-    v->battery_power_in = m->power.solar;
-    v->battery_power_out = m->power.consumed;
-    v->battery_power_stored = m->power.stored;
+    v->battery_power_in = power->solar;
+    v->battery_power_out = power->consumed;
+    v->battery_power_stored = power->stored;
     v->battery_empty = m->empty;
     v->battery_on_reserve = m->on_reserve;
     v->sun_elevation = m->sun.elevation;
@@ -106,14 +106,13 @@ void model_outputs(Model *m) {
     if (!is_kinematic(m)) airframe_angles(m, &o);
     v->time = m->start_time + (double)m->now / 1e9;
     motion_outputs(v, &o);
-    if (is_kinematic(m)) kinematic_outputs(m, &o);
-    else airframe_outputs(m);
+    Power power = is_kinematic(m) ? kinematic_outputs(m, &o) : airframe_outputs(m);
     double gravity = gravity_at(v, o.altitude);
     v->sensor_load_factor = gravity > 0.0 ? -v->sensor_specific_force_z / gravity : 0.0;
     v->state_elevon_left = v->state_elevator + v->state_aileron;
     v->state_elevon_right = v->state_elevator - v->state_aileron;
     air_outputs(m, &o);
-    power_outputs(m);
+    power_outputs(m, &power);
     v->flight_phase = m->flight;
     v->flight_contact_speed = m->contact_speed;
     v->guidance_cross_track = m->guidance.cross_track;

@@ -1,17 +1,7 @@
-/* Propeller: throttle (0..1) to thrust along the body's forward axis, and back. */
+/* Propeller: from the thrust wanted back to the throttle (thrust itself is in model.h). */
 #include <math.h>
 
 #include "model.h"
-
-/* Thrust [N].
- * Disc: T = 1/2 rho S C Vd (Vd - Va), Vd = Va + throttle (k - Va) (Fitzpatrick 2013, Eqs. 4-6).
- * Linear: T = throttle * Tmax. */
-double thrust(const Variables *v, double throttle, double airspeed, double density) {
-    if (v->aircraft_propulsion_model == PROPULSION_LINEAR) return throttle * v->aircraft_propulsion_max_thrust;
-    double added = throttle * (v->aircraft_propulsion_motor_speed - airspeed);
-    double disc = v->aircraft_propulsion_disc_area * v->aircraft_propulsion_coefficient;
-    return 0.5 * density * disc * (airspeed + added) * added;
-}
 
 /* Throttle that gives a thrust, within 0..1. */
 double throttle_for(const Variables *v, double thrust_wanted, double airspeed, double density) {

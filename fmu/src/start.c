@@ -82,7 +82,7 @@ static void reset_memory(Model *m, double start_time) {
     m->demand.airspeed = m->v.initial_airspeed;
     m->start_time = start_time;
     m->contact_speed = 0.0;
-    m->now = m->next_sample = 0;
+    m->now = m->next_sample = m->next_power = 0;
     m->events = 0;
     m->clear_of_ground = m->empty = m->on_reserve = false;
     m->outputs_stale = true;
@@ -96,6 +96,9 @@ const char *model_initialise(Model *m, double start_time) {
     if (wrong) return wrong;
     memset(m->x, 0, sizeof m->x);
     inertia_constants(v, &m->inertia);
+    m->per_mass = 1.0 / v->aircraft_mass;
+    m->per_surface_time = 1.0 / v->aircraft_actuator_surface_time;
+    m->per_throttle_time = 1.0 / v->aircraft_actuator_throttle_time;
     m->flight = v->launch_mode != LAUNCH_NONE ? FLIGHT_HELD : FLIGHT_FLYING;
     m->x[X_NORTH] = v->initial_north;
     m->x[X_EAST] = v->initial_east;
