@@ -24,9 +24,9 @@ SUMMARY_KEYS = [
     *(
         "waypoints_replaced",
         "replans",
-        "decision_ms",
         "state_of_charge",
         "reserve_used",
+        "decision_ms",
         "wall_s",
         "real_time_factor",
     ),
