@@ -58,26 +58,31 @@ def way_round(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None
     rng : numpy.random.Generator
         The planner's randomness.
     """
-    worth = problem.parameters.worth_relaxing
-    search, best = None, None
+    search = None
     for rung, relaxed in RUNGS:
-        if best is not None and rung is not Rung.CLOSE:
-            continue
         search = search_waypoint(replace(problem, relaxed=relaxed), rng)
-        if search.found is None:
-            continue
-        added = _length(problem, (search.found,)) - math.dist(problem.start, problem.target)
-        if added < worth:
-            return Plan(rung, (search.found,), search)
-        if best is None or added < best[0] - worth:
-            best = (added, Plan(rung, (search.found,), search))
+        if search.found is not None:
+            return _cheapest(problem, Plan(rung, (search.found,), search), rng)
     route = _kept_from_intruders(problem, exact_route(problem))
-    if best is None:
-        return None if route is None or search is None else Plan(Rung.ROUTE, route, search)
-    single = best[1]
-    if route and _length(problem, route) < _length(problem, single.waypoints) - worth:
-        return Plan(Rung.ROUTE, route, single.search)
-    return single
+    return None if route is None or search is None else Plan(Rung.ROUTE, route, search)
+
+
+def _cheapest(problem: WaypointProblem, plan: Plan, rng: np.random.Generator) -> Plan:
+    """The plan, or one further down the ladder if that is much shorter."""
+    worth = problem.parameters.worth_relaxing
+    length = _length(problem, plan.waypoints)
+    if length - math.dist(problem.start, problem.target) < worth:
+        return plan
+    route = _kept_from_intruders(problem, exact_route(problem))
+    if not route or _length(problem, route) > length - worth:
+        return plan
+    if plan.rung is not Rung.CLOSE:
+        search = search_waypoint(replace(problem, relaxed=RUNGS[-1][1]), rng)
+        if search.found is not None and _length(problem, (search.found,)) < length - worth:
+            plan = Plan(Rung.CLOSE, (search.found,), search)
+    if _length(problem, route) < _length(problem, plan.waypoints) - worth:
+        return Plan(Rung.ROUTE, route, plan.search)
+    return plan
 
 
 def widest_way(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None:
