@@ -13,7 +13,7 @@ import numpy as np
 
 from avoidance.geometry import segment_point_distance, segments_clearance
 from avoidance.problem import INFEASIBLE, WaypointProblem
-from avoidance.types import Floats, Ints
+from avoidance.types import Bools, Floats, Ints
 
 OUTSIDE = 0.02
 """Seeds lie this far outside the curves they stand on [m]."""
@@ -99,12 +99,14 @@ def rule_seeds(problem: WaypointProblem, count: int) -> tuple[Floats, int]:
         centres = problem.centres[near]
         keep = problem.keep[near]
         keep_waypoint = (keep if "g1" in problem.relaxed else problem.keep_waypoint[near]) + OUTSIDE
+        start_open = _open_tangents(problem, problem.start, centres, keep)
+        target_open = _open_tangents(problem, problem.target, centres, keep)
         for pad in CORNER_PADS:
-            from_start = _open_tangents(problem, problem.start, centres, keep + pad)
-            from_target = _open_tangents(problem, problem.target, centres, keep + pad)
+            from_start = _tangent_directions(problem.start, centres, keep + pad)[start_open]
+            from_target = _tangent_directions(problem.target, centres, keep + pad)[target_open]
             candidates.append(_cross(problem.start, from_start, problem.target, from_target))
-        from_start = _open_tangents(problem, problem.start, centres, keep + OUTSIDE)
-        from_target = _open_tangents(problem, problem.target, centres, keep + OUTSIDE)
+        from_start = _tangent_directions(problem.start, centres, keep + OUTSIDE)[start_open]
+        from_target = _tangent_directions(problem.target, centres, keep + OUTSIDE)[target_open]
         candidates += [
             _pierce(problem.start, from_start, centres, keep_waypoint),
             _pierce(problem.target, from_target, centres, keep_waypoint),
@@ -141,20 +143,26 @@ def _terminals(problem: WaypointProblem, members: Ints) -> tuple[int, int]:
     return int(members[int(np.argmin(side))]), int(members[int(np.argmax(side))])
 
 
-def _open_tangents(
-    problem: WaypointProblem, point: tuple[float, float], centres: Floats, radii: Floats
-) -> Floats:
-    """Directions of the tangents from a point to circles that nothing blocks before they touch [rad]."""
+def _tangent_directions(point: tuple[float, float], centres: Floats, radii: Floats) -> Floats:
+    """Directions of the left, then of the right tangent from a point to each circle, shape (2d,) [rad]."""
     offset = centres - np.array(point)
     distance = np.hypot(offset[:, 0], offset[:, 1])
-    outside = distance > radii
-    bearing = np.arctan2(offset[outside, 1], offset[outside, 0])
-    opening = np.arcsin(radii[outside] / distance[outside])
-    reach = np.sqrt(distance[outside] ** 2 - radii[outside] ** 2)
-    angle = np.concatenate([bearing - opening, bearing + opening])
-    touch = np.tile(reach, 2)[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1) + np.array(point)
+    bearing = np.arctan2(offset[:, 1], offset[:, 0])
+    opening = np.arcsin(np.minimum(radii / np.maximum(distance, 1e-9), 1.0))
+    return np.concatenate([bearing - opening, bearing + opening])
+
+
+def _open_tangents(
+    problem: WaypointProblem, point: tuple[float, float], centres: Floats, radii: Floats
+) -> Bools:
+    """Which of the tangents from a point nothing blocks before they touch their circle, shape (2d,)."""
+    offset = centres - np.array(point)
+    square = (offset**2).sum(axis=1) - (radii + OUTSIDE) ** 2
+    reach = np.tile(np.sqrt(np.maximum(square, 0.0)), 2)
+    angle = _tangent_directions(point, centres, radii + OUTSIDE)
+    touch = reach[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1) + np.array(point)
     gap = segments_clearance(np.broadcast_to(np.array(point), touch.shape), touch, problem.centres)
-    return angle[(gap >= problem.keep - OUTSIDE).all(axis=1)]
+    return np.asarray((gap >= problem.keep - OUTSIDE).all(axis=1) & (np.tile(square, 2) > 0.0))
 
 
 def _cross(start: tuple[float, float], first: Floats, target: tuple[float, float], second: Floats) -> Floats:
