@@ -29,7 +29,7 @@ class SwarmSettings:
     """True: the personal best is the iteration's one best, as Fig. 16 prints it (erratum E28)."""
     stop_change: float = 1e-5
     """Stop when the best changes by less than this ..."""
-    stop_iterations: int = 4
+    stop_iterations: int = 3
     """... in as many iterations running."""
 
 
@@ -81,7 +81,7 @@ class Parameters:
     """Moving obstacles further away than this are watched, not avoided."""
     predict: bool = True
     """Moving obstacles are extrapolated; else their present position is taken as a stationary one."""
-    worth_relaxing: float = 60.0
+    worth_relaxing: float = 150.0
     """A waypoint gives way to one nearer the obstacles, or to a route, that is shorter by more than this."""
     optimiser: str = "pso"
     """Name of the planner of single waypoints."""

@@ -23,7 +23,7 @@ CHUNK = 48
 """Candidates tested at once for feasibility."""
 MOST_OBSTACLES = 40
 """Obstacles whose curves are intersected; more would not fit a decision's budget."""
-CIRCLE_POINTS = 24
+CIRCLE_POINTS = 12
 """Points on each circle that the waypoint must keep clear of."""
 REACH = 2000.0
 """Obstacles this much further than the search limit cannot bound the search [m]."""

@@ -1,0 +1,56 @@
+"""Time of one decision with a threat, by obstacles known: medians as a Markdown table.
+
+Run from the repository's root: `python benchmarks/bench_decision.py`. One obstacle blocks the leg, the
+others stand about it as the seeds place them.
+"""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from avoidance import Contact, Ownship, Performance, RadarScan, Route, Waypoint
+from avoidance.agent import Agent
+
+WORLDS = 60
+PERFORMANCE = Performance(
+    airspeed=15.0, max_bank=0.5236, roll_time=1.3, acceptance_radius=100.0, tracking_error=5.0
+)
+
+
+def decision_ms(seed: int, obstacles: int) -> float:
+    """Time of the decision about one random world [ms]."""
+    rng = np.random.default_rng(seed)
+    blocking = Contact(0, 8000.0, float(rng.uniform(-600.0, 600.0)), 200.0)
+    contacts = [blocking]
+    while len(contacts) < obstacles:
+        north, east = rng.uniform(2500.0, 10_000.0), rng.uniform(-7000.0, 7000.0)
+        if abs(east) > 1200.0:
+            contacts.append(Contact(len(contacts), float(north), float(east), 200.0))
+    agent = Agent(PERFORMANCE, rng=rng)
+    route = Route(Waypoint(0.0, 0.0, 200.0), (Waypoint(40_000.0, 0.0, 200.0, item=0),))
+    spent = 0.0
+    for second in range(2):
+        own = Ownship(float(second), 15.0 * second, 0.0, 200.0, 15.0, 0.0, airspeed=15.0)
+        scan = RadarScan.of(float(second), contacts)
+        begun = time.perf_counter()
+        decision = agent.decide(own, route, scan)
+        spent = 1000.0 * (time.perf_counter() - begun)
+        if decision.route is not None:
+            break
+    return spent
+
+
+def main() -> None:
+    """Print the table."""
+    decision_ms(0, 5)  # imports and caches
+    print("| obstacles known | median [ms] | p99 [ms] |")
+    print("|---|---|---|")
+    for count in (1, 5, 20, 50, 100):
+        times = [decision_ms(seed, count) for seed in range(WORLDS)]
+        print(f"| {count} | {np.median(times):.1f} | {np.percentile(times, 99):.1f} |")
+
+
+if __name__ == "__main__":
+    main()
