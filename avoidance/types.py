@@ -197,7 +197,7 @@ class Rung(Enum):
     ROUTE = "route"
     """Several waypoints, from the exact planner."""
     ORBIT = "orbit"
-    """No way is known: wait in space known to be free."""
+    """No way is known: wait in an orbit on the side with more room."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -252,7 +252,7 @@ class Reroute(Decision):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Hold(Decision):
-    """Orbit in space known to be free until a way opens."""
+    """Orbit on the side with more room until a way opens."""
 
     centre: Waypoint
     """Centre of the orbit."""
