@@ -74,6 +74,11 @@ def distances(points: Floats, centres: Floats) -> Floats:
     return np.asarray(np.sqrt(north * north + east * east))  # hypot is several times slower
 
 
+def point_distances(centres: Floats, point: Point) -> Floats:
+    """Distance of each centre, shape (n, 2), from one point [m], shape (n,)."""
+    return np.asarray(np.hypot(centres[:, 0] - float(point[0]), centres[:, 1] - float(point[1])))
+
+
 def segments_clearance(starts: Floats, ends: Floats, centres: Floats) -> Floats:
     """Distance of every centre from every segment.
 

@@ -16,6 +16,7 @@ import numpy as np
 
 from avoidance.constraints import feasible_segments
 from avoidance.flown import flown_segments
+from avoidance.geometry import point_distances
 from avoidance.problem import WaypointProblem
 from avoidance.search import search_waypoint
 from avoidance.tangent_graph import shortest_path
@@ -123,8 +124,8 @@ def exact_route(problem: WaypointProblem) -> tuple[tuple[float, float], ...] | N
     the vehicle is already inside.
     """
     keep = problem.keep
-    free_start = _distance(problem.centres, problem.start) - 0.5
-    free_target = _distance(problem.centres, problem.target) - 0.5
+    free_start = point_distances(problem.centres, problem.start) - 0.5
+    free_target = point_distances(problem.centres, problem.target) - 0.5
     room = 2.0 * problem.performance.turn_radius
     for pad in (1.0, 0.25 * room, 0.5 * room, room, 2.0 * room):
         radii = np.minimum(np.minimum(keep + pad, free_start), free_target)
@@ -152,7 +153,3 @@ def _flyable(problem: WaypointProblem, corners: Floats) -> bool:
         starts[:, skip:], ends[:, skip:], extra[:, skip:], problem.centres, problem.keep - 0.5
     )
     return bool(shortfall[0] <= 0.0)
-
-
-def _distance(centres: Floats, point: tuple[float, float]) -> Floats:
-    return np.hypot(centres[:, 0] - point[0], centres[:, 1] - point[1])
