@@ -13,6 +13,7 @@ import numpy as np
 
 from avoidance.geometry import segment_point_distance, segments_clearance
 from avoidance.problem import INFEASIBLE, WaypointProblem
+from avoidance.refine import refined
 from avoidance.types import Bools, Floats, Ints
 
 OUTSIDE = 0.02
@@ -25,6 +26,10 @@ MOST_OBSTACLES = 40
 """Obstacles whose curves are intersected; more would not fit a decision's budget."""
 CIRCLE_POINTS = 12
 """Points on each circle that the waypoint must keep clear of."""
+ROUNDS = 3
+"""Steps that the best seed is moved by."""
+ROUNDS_FROM_AFAR = 8
+"""The same, where none of the curves led to a feasible point."""
 REACH = 2000.0
 """Obstacles this much further than the search limit cannot bound the search [m]."""
 
@@ -91,8 +96,28 @@ def rule_seeds(problem: WaypointProblem, count: int) -> tuple[Floats, int]:
     Notes
     -----
     Intersections of tangents with tangents, tangents with circles, circles with circles, and points along
-    the circles. Candidates are taken in order of cost, so the first feasible one is the best of all.
+    the circles. Candidates are taken in order of cost, so the first feasible one is the best of all; turns
+    and risk move the best waypoint off these points a little, so it is then refined. Where no candidate is
+    feasible (the turn on to the first leg can ask for more room than the curves give) points in a fan are
+    tried.
     """
+    if not len(problem.avoided) and not len(problem.intruders.required):
+        return _fan(problem)[:count], 0
+    seeds, ranks, tested = _best_first(problem, _candidates(problem), count)
+    rounds = ROUNDS
+    if ranks[0] >= INFEASIBLE and not len(problem.intruders.required):
+        seeds, ranks, more = _best_first(problem, np.concatenate([seeds, _fan(problem)]), count)
+        tested += more
+        rounds = ROUNDS_FROM_AFAR
+    if ranks[0] < INFEASIBLE:
+        best, _, more = refined(problem, seeds[0], float(ranks[0]), rounds)
+        seeds = np.concatenate([best[None], seeds])[:count]
+        tested += more
+    return seeds, tested
+
+
+def _candidates(problem: WaypointProblem) -> Floats:
+    """Points where curves that bound the feasible set meet, shape (m, 2)."""
     near = _near(problem)
     candidates = [_fan(problem)] if len(problem.intruders.required) else []
     if len(near):
@@ -110,12 +135,11 @@ def rule_seeds(problem: WaypointProblem, count: int) -> tuple[Floats, int]:
         candidates += [
             _pierce(problem.start, from_start, centres, keep_waypoint),
             _pierce(problem.target, from_target, centres, keep_waypoint),
+            *_on_search_limit(problem, from_start, from_target),
             _circle_crossings(centres, keep_waypoint),
             _circle_points(problem, centres, keep_waypoint),
         ]
-    if not candidates:
-        return _fan(problem)[:count], 0
-    return _best_first(problem, np.concatenate(candidates), count)
+    return np.concatenate(candidates)
 
 
 def _near(problem: WaypointProblem) -> Ints:
@@ -194,6 +218,16 @@ def _pierce(point: tuple[float, float], directions: Floats, centres: Floats, rad
     return np.concatenate(found)
 
 
+def _on_search_limit(problem: WaypointProblem, from_start: Floats, from_target: Floats) -> tuple[Floats, ...]:
+    """Where rays leave the search space (g2), each of shape (m, 2)."""
+    if "g2" in problem.relaxed:
+        return ()
+    members = problem.centres[problem.avoided]
+    limit = np.full(len(members), problem.parameters.search_limit - OUTSIDE)
+    rays = ((problem.start, from_start), (problem.target, from_target))
+    return tuple(_pierce(point, directions, members, limit) for point, directions in rays)
+
+
 def _circle_crossings(centres: Floats, radii: Floats) -> Floats:
     """Intersections of all pairs of circles, shape (m, 2)."""
     first, second = np.triu_indices(len(centres), 1)
@@ -229,8 +263,8 @@ def _fan(problem: WaypointProblem) -> Floats:
     return np.asarray(np.array(problem.start) + grid).reshape(-1, 2)
 
 
-def _best_first(problem: WaypointProblem, candidates: Floats, count: int) -> tuple[Floats, int]:
-    """The best feasible candidates first, then the least violating ones.
+def _best_first(problem: WaypointProblem, candidates: Floats, count: int) -> tuple[Floats, Floats, int]:
+    """The best feasible candidates first, then the least violating ones; their ranks; how many were tested.
 
     The constraints on the waypoint itself (g1, g2) are cheap and sort out most candidates; the flown curve
     of the others is tested in order of cost until one is clear.
@@ -248,5 +282,6 @@ def _best_first(problem: WaypointProblem, candidates: Floats, count: int) -> tup
         tested += len(chunk)
         if ranks[-1].min() < INFEASIBLE:
             break
-    points, order = np.concatenate(chosen), np.argsort(np.concatenate(ranks), kind="stable")
-    return points[order[:count]], tested
+    points, rank = np.concatenate(chosen), np.concatenate(ranks)
+    order = np.argsort(rank, kind="stable")[:count]
+    return points[order], rank[order], tested
