@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from avoidance.flown import turn_angle
-from avoidance.geometry import distances, segments_clearance
+from avoidance.geometry import distances, segments_clearance, within_reach
 from avoidance.types import Floats
 
 
@@ -32,10 +32,13 @@ def safe_waypoint(points: Floats, centres: Floats, required: Floats) -> Floats:
     -----
     Eq. (7).
     """
-    if not len(centres):
+    if not len(centres) or not len(points):
         return np.zeros(len(points))
-    distance = distances(points, centres)
-    return np.asarray(np.maximum((required - distance).max(axis=1), 0.0))
+    near = within_reach(points, centres, required)
+    if not near.any():
+        return np.zeros(len(points))
+    distance = distances(points, centres[near])
+    return np.asarray(np.maximum((required[near] - distance).max(axis=1), 0.0))
 
 
 def search_space(points: Floats, members: Floats, limit: float) -> Floats:
@@ -93,6 +96,11 @@ def feasible_segments(
     if not len(centres):
         return np.zeros(len(starts))
     count, pieces = extra.shape
+    ends_all = np.concatenate([starts.reshape(-1, 2), ends.reshape(-1, 2)])
+    near = within_reach(ends_all, centres, required + extra.max())
+    centres, required = centres[near], required[near]
+    if not len(centres):
+        return np.zeros(count)
     distance = segments_clearance(starts.reshape(-1, 2), ends.reshape(-1, 2), centres)
     shortfall = (required[None] + extra.reshape(-1, 1) - distance).max(axis=1)
     return np.asarray(np.maximum(shortfall.reshape(count, pieces).max(axis=1), 0.0))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from avoidance.geometry import distances
+from avoidance.geometry import distances, within_reach
 from avoidance.types import Floats
 
 
@@ -56,9 +56,9 @@ def risk(points: Floats, centres: Floats, risk_distance: float, squared_metres: 
     Eqs. (3)-(5). Differs from the paper: E19, MXRSK is never given and Eq. (5) mixes m² with m, so that f2
     acts as a wall at MXRSK; unless `squared_metres`, each obstacle adds ((MXRSK - dis)/MXRSK)².
     """
-    if not len(centres):
+    if not len(centres) or not len(points):
         return np.zeros(len(points))
-    distance = distances(points, centres)
+    distance = distances(points, centres[within_reach(points, centres, risk_distance)])
     intrusion = np.maximum(risk_distance - distance, 0.0)
     if squared_metres:
         return np.asarray(intrusion.sum(axis=1) ** 2)

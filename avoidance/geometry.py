@@ -12,7 +12,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from avoidance.types import Floats
+from avoidance.types import Bools, Floats
 
 Point: TypeAlias = Sequence[float] | Floats
 """A point as any indexable pair (north, east) [m]."""
@@ -77,6 +77,33 @@ def distances(points: Floats, centres: Floats) -> Floats:
 def point_distances(centres: Floats, point: Point) -> Floats:
     """Distance of each centre, shape (n, 2), from one point [m], shape (n,)."""
     return np.asarray(np.hypot(centres[:, 0] - float(point[0]), centres[:, 1] - float(point[1])))
+
+
+def within_reach(points: Floats, centres: Floats, reach: Floats | float) -> Bools:
+    """Which centres can lie within `reach` of any of the points, by the box about them.
+
+    Parameters
+    ----------
+    points : Floats
+        Points (north, east) [m], shape (m, 2), m >= 1.
+    centres : Floats
+        Points (north, east) [m], shape (n, 2).
+    reach : Floats or float
+        Distance for all or for each centre [m], shape (n,).
+
+    Returns
+    -------
+    Bools
+        False only where no point is that near, shape (n,).
+    """
+    (low_north, low_east), (high_north, high_east) = points.min(axis=0), points.max(axis=0)
+    north, east = centres[:, 0], centres[:, 1]
+    return np.asarray(
+        (north + reach >= low_north)
+        & (north - reach <= high_north)
+        & (east + reach >= low_east)
+        & (east - reach <= high_east)
+    )
 
 
 def segments_clearance(starts: Floats, ends: Floats, centres: Floats) -> Floats:

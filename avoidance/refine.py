@@ -9,7 +9,9 @@ from avoidance.types import Floats
 
 STEPS = 2000.0 * np.geomspace(1.0, 1.0 / 4096.0, 9)
 """Lengths of the steps tried in each round [m]."""
-DIRECTIONS = np.array([(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, -1), (1, -1), (-1, 1)], dtype=np.float64)
+DIRECTIONS = np.array(
+    [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, -1), (1, -1), (-1, 1)], dtype=np.float64
+)
 """Steps along the first leg and along the second."""
 
 
@@ -21,9 +23,9 @@ def refined(problem: WaypointProblem, point: Floats, rank: float, rounds: int) -
     problem : WaypointProblem
         The search.
     point : array, shape (2,)
-        Where to begin [m].
+        A feasible point to begin with [m].
     rank : float
-        Its rank (`WaypointProblem.rank`).
+        Its cost.
     rounds : int
         Most rounds; each takes the best of all steps.
 
@@ -32,9 +34,9 @@ def refined(problem: WaypointProblem, point: Floats, rank: float, rounds: int) -
     point : array, shape (2,)
         The best point [m], the given one if no step is better.
     rank : float
-        Its rank.
+        Its cost.
     evaluated : int
-        Points looked at.
+        Points whose flown curve was looked at.
 
     Notes
     -----
@@ -47,6 +49,10 @@ def refined(problem: WaypointProblem, point: Floats, rank: float, rounds: int) -
     for _ in range(rounds):
         legs = np.stack([_unit(point - start), _unit(target - point)])
         candidates = point + (STEPS[:, None, None] * (DIRECTIONS @ legs)).reshape(-1, 2)
+        candidates = candidates[problem.cost(candidates) < rank]
+        candidates = candidates[problem.waypoint_violation(candidates) <= 0.0]
+        if not len(candidates):
+            break
         ranks = problem.rank(candidates)
         evaluated += len(candidates)
         best = int(np.argmin(ranks))

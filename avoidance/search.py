@@ -32,7 +32,7 @@ class Optimiser(Protocol):
     def tell(self, costs: Floats) -> None: ...
 
 
-HOPELESS = 8
+HOPELESS = 3
 """Rule seeds find a feasible point if there is one; a swarm that has none after so many iterations stops."""
 
 OPTIMISERS: dict[str, type[Optimiser]] = {"pso": Pso}

@@ -8,9 +8,11 @@ clear of, and the circles that the waypoint itself must keep clear of.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
+from avoidance.cost import path_length
 from avoidance.geometry import segment_point_distance, segments_clearance
 from avoidance.problem import INFEASIBLE, WaypointProblem
 from avoidance.refine import refined
@@ -20,8 +22,12 @@ OUTSIDE = 0.02
 """Seeds lie this far outside the curves they stand on [m]."""
 CORNER_PADS = (OUTSIDE, 6.0, 20.0, 60.0)
 """Tangents that meet near their circle are drawn this far outside, so that the turn stays outside too [m]."""
+BATCH = 256
+"""Candidates whose own place is tested at once."""
 CHUNK = 48
-"""Candidates tested at once for feasibility."""
+"""Candidates whose flown curve is tested at once."""
+NO_WAYPOINT = 1e6
+"""Violation of a candidate whose own place breaks a constraint, beside how much it breaks it [m]."""
 MOST_OBSTACLES = 40
 """Obstacles whose curves are intersected; more would not fit a decision's budget."""
 CIRCLE_POINTS = 12
@@ -266,22 +272,37 @@ def _fan(problem: WaypointProblem) -> Floats:
 def _best_first(problem: WaypointProblem, candidates: Floats, count: int) -> tuple[Floats, Floats, int]:
     """The best feasible candidates first, then the least violating ones; their ranks; how many were tested.
 
-    The constraints on the waypoint itself (g1, g2) are cheap and sort out most candidates; the flown curve
-    of the others is tested in order of cost until one is clear.
+    They are taken in order of length, the constraints on the waypoint itself (g1, g2) first, for they are
+    cheap and sort out most; then the flown curve. No longer one can be better once the best costs less
+    than its length alone.
     """
-    short = problem.waypoint_violation(candidates)
-    good = candidates[short <= 0.0]
-    good = good[np.argsort(problem.cost(good), kind="stable")]
-    chosen = [candidates[np.argsort(short, kind="stable")[:count]]] if len(good) < count else []
-    ranks = [INFEASIBLE + short[np.argsort(short, kind="stable")[:count]] + 1e6] if chosen else []
-    tested = 0
-    for begin in range(0, len(good), CHUNK):
-        chunk = good[begin : begin + CHUNK]
-        chosen.append(chunk)
-        ranks.append(problem.rank(chunk))
-        tested += len(chunk)
-        if ranks[-1].min() < INFEASIBLE:
+    length = path_length(candidates, problem.start, problem.target)
+    order = np.argsort(length, kind="stable")
+    chosen: list[Floats] = []
+    ranks: list[Floats] = []
+    best, tested = math.inf, 0
+    for begin in range(0, len(order), BATCH):
+        if best < INFEASIBLE and best <= problem.parameters.path_weight * length[order[begin]]:
             break
+        batch = candidates[order[begin : begin + BATCH]]
+        short = problem.waypoint_violation(batch)
+        good = short <= 0.0
+        chosen.append(batch[~good])
+        ranks.append(INFEASIBLE + NO_WAYPOINT + short[~good])
+        for points in _chunks(problem, batch[good]):
+            chosen.append(points)
+            ranks.append(problem.rank(points))
+            tested += len(points)
+            best = min(best, float(ranks[-1].min()))
+            if best < INFEASIBLE:
+                break
     points, rank = np.concatenate(chosen), np.concatenate(ranks)
-    order = np.argsort(rank, kind="stable")[:count]
-    return points[order], rank[order], tested
+    first = np.argsort(rank, kind="stable")[:count]
+    return points[first], rank[first], tested
+
+
+def _chunks(problem: WaypointProblem, points: Floats) -> Iterator[Floats]:
+    """Points in order of cost, a few at a time."""
+    points = points[np.argsort(problem.cost(points), kind="stable")]
+    for begin in range(0, len(points), CHUNK):
+        yield points[begin : begin + CHUNK]

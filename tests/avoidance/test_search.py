@@ -100,3 +100,20 @@ def test_length_to_optimum_compares_with_the_shortest_path() -> None:
 def test_the_gap_has_no_meaning_without_a_detour() -> None:
     search = search_waypoint(problem([(9000.0, 3000.0)]), np.random.default_rng(0))
     assert search_gap(search) is None
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("spread", [700.0, 3000.0], ids=["clustered", "spread"])
+def test_a_waypoint_is_found_wherever_a_grid_finds_one(spread: float, seed: int) -> None:
+    """Dense fields, where the best waypoint touches the search limit, several circles or the first turn."""
+    rng = np.random.default_rng([seed, int(spread)])
+    centres = rng.normal((7000.0, 0.0), (spread, spread), (14, 2))
+    ends = np.minimum(np.hypot(*centres.T), np.hypot(*(centres - [20_000.0, 0.0]).T))
+    question = problem([(c[0], c[1]) for c in centres[ends > 1200.0]], target=(20_000.0, 0.0))
+    search = search_waypoint(question, rng)
+    if best_waypoint(question) is None:
+        assert search.found is None
+        return
+    assert search.found is not None
+    gap = search_gap(search)
+    assert gap is None or gap < 0.01
