@@ -10,7 +10,7 @@ from avoidance.detours import fly_round, search_problem
 from avoidance.escape import Escape
 from avoidance.holding import holding_orbit, holding_words, skipped
 from avoidance.known import Known, keep_what_can_be_kept, known_obstacles
-from avoidance.ladder import way_round, widest_way
+from avoidance.ladder import Way, way_round, widest_way
 from avoidance.parameters import DEFAULT, Parameters
 from avoidance.replacement import Replacements
 from avoidance.route_check import Blocked, first_blocked_leg, first_conflict
@@ -47,6 +47,8 @@ class Agent:
         A preset; see `avoidance.parameters.PRESETS`.
     rng : numpy.random.Generator, optional
         The planner's randomness; seed 0 unless given.
+    way : callable, optional
+        Finds the way round; another planner than the ladder of single waypoints.
 
     Notes
     -----
@@ -61,10 +63,12 @@ class Agent:
         performance: Performance,
         parameters: Parameters = DEFAULT,
         rng: np.random.Generator | None = None,
+        way: Way = way_round,
     ) -> None:
         self._performance = performance
         self._parameters = parameters
         self._rng = np.random.default_rng(0) if rng is None else rng
+        self._way = way
         self._tracker = Tracker(parameters)
         self._escape = Escape(performance)
         self._replacements = Replacements(performance, parameters)
@@ -128,7 +132,7 @@ class Agent:
 
     def _avoid(self, own: Ownship, route: Route, known: Known, blocked: Blocked) -> Decision:
         problem, begin, end = search_problem(own, route, known, blocked, self._performance, self._parameters)
-        plan = way_round(problem, self._rng)
+        plan = self._way(problem, self._rng)
         if plan is None and len(known.intruders.required):
             plan = widest_way(problem, self._rng)
         if plan is not None:

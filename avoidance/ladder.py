@@ -9,6 +9,7 @@ to it.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -47,6 +48,10 @@ class Plan:
     """New waypoints in order, north and east [m]."""
     search: Search
     """The waypoint search made first (with every constraint), or the one that found the waypoint."""
+
+
+Way = Callable[[WaypointProblem, np.random.Generator], Plan | None]
+"""Whatever finds a way round, or None; draws from the generator."""
 
 
 def way_round(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None:

@@ -163,3 +163,16 @@ class WaypointProblem:
 def straight_cost(problem: WaypointProblem) -> float:
     """Cost of flying straight on without risk: the zero of `search_gap`."""
     return problem.parameters.path_weight * math.dist(problem.start, problem.target)
+
+
+def search_box(problem: WaypointProblem) -> Floats:
+    """Least and largest north and east of the points worth a look, shape (2, 2) [m].
+
+    What g2 allows about the obstacles avoided; where it does not hold, all about the leg.
+    """
+    if len(problem.avoided) and "g2" not in problem.relaxed:
+        ends, reach = problem.centres[problem.avoided], problem.parameters.search_limit
+    else:
+        ends = np.array([problem.start, problem.target])
+        reach = 2.0 * problem.parameters.search_limit
+    return np.array([ends.min(axis=0) - reach, ends.max(axis=0) + reach])

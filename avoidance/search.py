@@ -7,8 +7,13 @@ from typing import Protocol
 import numpy as np
 
 from avoidance.parameters import SwarmSettings
-from avoidance.problem import INFEASIBLE, WaypointProblem
+from avoidance.problem import INFEASIBLE, WaypointProblem, search_box
 from avoidance.pso import Pso
+from avoidance.rivals.ga import Ga
+from avoidance.rivals.gcpso import Gcpso
+from avoidance.rivals.mpso import Mpso
+from avoidance.rivals.sa import Sa
+from avoidance.rivals.theta_mafoa import ThetaMafoa
 from avoidance.seeds import rule_seeds, sphere_seeds
 from avoidance.types import Floats, Search
 
@@ -16,11 +21,14 @@ from avoidance.types import Floats, Search
 class Optimiser(Protocol):
     """A planner of single waypoints: it proposes points, is told their costs, and knows its best.
 
-    Built with (seeds of shape (m, 2), settings, random generator). Infeasible points are told costs above
-    every feasible one's, growing with their violation, so that all planners order candidates alike.
+    Built with (seeds of shape (m, 2), search box of shape (2, 2), settings, random generator). Infeasible
+    points are told costs above every feasible one's, growing with their violation, so that all planners
+    order candidates alike.
     """
 
-    def __init__(self, seeds: Floats, settings: SwarmSettings, rng: np.random.Generator) -> None: ...
+    def __init__(
+        self, seeds: Floats, box: Floats, settings: SwarmSettings, rng: np.random.Generator
+    ) -> None: ...
 
     @property
     def best(self) -> Floats: ...
@@ -35,7 +43,14 @@ class Optimiser(Protocol):
 HOPELESS = 3
 """Rule seeds find a feasible point if there is one; a swarm that has none after so many iterations stops."""
 
-OPTIMISERS: dict[str, type[Optimiser]] = {"pso": Pso}
+OPTIMISERS: dict[str, type[Optimiser]] = {
+    "pso": Pso,
+    "gcpso": Gcpso,
+    "mpso": Mpso,
+    "ga": Ga,
+    "sa": Sa,
+    "theta-mafoa": ThetaMafoa,
+}
 """Planners by name."""
 
 
@@ -65,7 +80,7 @@ def search_waypoint(problem: WaypointProblem, rng: np.random.Generator) -> Searc
         seeds, evaluations = rule_seeds(problem, settings.particles)
     else:
         seeds = sphere_seeds(problem, settings.particles, rng)
-    optimiser = OPTIMISERS[parameters.optimiser](seeds, settings, rng)
+    optimiser = OPTIMISERS[parameters.optimiser](seeds, search_box(problem), settings, rng)
     iterations = 0
     first_feasible: int | None = None
     while not optimiser.finished:

@@ -50,7 +50,9 @@ def detour_words(threat: Threat, plan: Plan) -> str:
         return threat_words(threat)
     side = _side(start, plan.waypoints[0], target)
     count = "" if len(plan.waypoints) == 1 else f" by {len(plan.waypoints)} waypoints"
-    return f"{threat_words(threat)}; pass {side}{count}, {added:.0f} m longer{GIVEN_UP.get(plan.rung, '')}"
+    searched = plan.search.iterations > 0  # else a route was wanted from the first
+    given_up = GIVEN_UP.get(plan.rung, "") if searched else ""
+    return f"{threat_words(threat)}; pass {side}{count}, {added:.0f} m longer{given_up}"
 
 
 def replace_words(original: Waypoint, chosen: Waypoint | None, ids: tuple[int, ...]) -> str:

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from avoidance.problem import INFEASIBLE, WaypointProblem, straight_cost
+from avoidance.problem import INFEASIBLE, WaypointProblem, search_box, straight_cost
 from avoidance.seeds import rule_seeds
 from avoidance.tangent_graph import shortest_path
 from avoidance.types import Floats, Search
@@ -36,7 +36,8 @@ def best_waypoint(problem: WaypointProblem) -> tuple[Floats, float] | None:
     (point, cost) or None
         Point of shape (2,) [m] and f of Eq. (6); None if the grid finds no feasible point.
     """
-    centre, half = _window(problem)
+    low, high = search_box(problem)
+    centre, half = 0.5 * (low + high), 0.5 * (high - low)
     axis = np.linspace(-1.0, 1.0, COARSE)
     grid = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
     points = np.concatenate([centre + half * grid, rule_seeds(problem, 40)[0]])
@@ -114,19 +115,6 @@ def _shrunk(search: Search) -> Floats:
         distance = np.hypot(search.centres[:, 0] - point[0], search.centres[:, 1] - point[1])
         radii = np.minimum(radii, distance - 1e-3)
     return np.maximum(radii, 0.0)
-
-
-def _window(problem: WaypointProblem) -> tuple[Floats, Floats]:
-    """Centre and half sides of the first grid."""
-    if len(problem.avoided) and "g2" not in problem.relaxed:
-        members = problem.centres[problem.avoided]
-        low, high = members.min(axis=0), members.max(axis=0)
-        reach = problem.parameters.search_limit
-    else:
-        ends = np.array([problem.start, problem.target])
-        low, high = ends.min(axis=0), ends.max(axis=0)
-        reach = 2.0 * problem.parameters.search_limit
-    return 0.5 * (low + high), 0.5 * (high - low) + reach
 
 
 def _rank(problem: WaypointProblem, points: Floats) -> Floats:

@@ -85,6 +85,7 @@ def scenario_of(case: Case, fidelity: Fidelity, parameters: Parameters) -> Scena
         name=case.name,
         seed=int(flight.generate_state(1)[0]),
         preset=parameters.name,
+        planner=parameters.optimiser,
         vehicle=replace(scenario.vehicle, fidelity=fidelity, acceptance_radius=reach),
     )
 

@@ -78,6 +78,9 @@ def fly(
             help="Avoidance as good as we can (default) or as printed (paper); else the scenario's."
         ),
     ] = None,
+    planner: Annotated[
+        str | None, typer.Option(help="Who finds ways round, such as pso, ga, exact; else the scenario's.")
+    ] = None,
     wind: Annotated[
         str | None,
         typer.Option(metavar="N,E", help="Steady wind towards north and east [m/s], such as 3,-4."),
@@ -107,6 +110,7 @@ def fly(
     from scenarios.check import wind_problems  # noqa: PLC0415
     from scenarios.errors import ScenarioError  # noqa: PLC0415
     from scenarios.load import load  # noqa: PLC0415
+    from scenarios.planners import planned_by  # noqa: PLC0415
     from scenarios.scenario import FIDELITIES, Wind  # noqa: PLC0415
     from scenarios.target import check_target, free_directory  # noqa: PLC0415
 
@@ -115,7 +119,7 @@ def fly(
             run.preset(preset)
         chosen = load(scenario)
         seed = chosen.seed if seed is None else seed
-        parameters = run.preset(preset or chosen.preset)
+        parameters = planned_by(run.preset(preset or chosen.preset), planner or chosen.planner)
         if wind is not None:
             chosen = replace(chosen, wind=Wind(*_two_numbers(wind)))
             if problems := wind_problems(chosen):
@@ -125,7 +129,7 @@ def fly(
                 known = ", ".join(FIDELITIES)
                 raise ScenarioError("--fidelity", f"{fidelity!r} is unknown; known: {known}")
             chosen = replace(chosen, vehicle=replace(chosen.vehicle, fidelity=FIDELITIES[fidelity]))
-        chosen = replace(chosen, seed=seed, preset=parameters.name)
+        chosen = replace(chosen, seed=seed, preset=parameters.name, planner=parameters.optimiser)
         chosen = run.prepare(chosen, seed, obstacles=obstacles)
         directory = output or free_directory(chosen, seed)
         check_target(directory)
@@ -180,6 +184,9 @@ def stress(
     seed: Annotated[int, typer.Option(min=0, help="Run i of a seed is the same world for ever.")] = 0,
     vehicle: Annotated[str, typer.Option(help="kinematic or 6dof.")] = "kinematic",
     preset: Annotated[str, typer.Option(help="Avoidance: default or paper.")] = "default",
+    planner: Annotated[
+        str | None, typer.Option(help="Who finds ways round, such as pso, ga, exact; pso if not given.")
+    ] = None,
     jobs: Annotated[int | None, typer.Option(min=1, help="Processes; as many as cores if not given.")] = None,
     dask: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Scheduler of a Dask cluster that does the work.")
@@ -199,7 +206,7 @@ def stress(
     from scenarios.stress_show import failures, progress, table  # noqa: PLC0415
 
     with _errors():
-        campaign = campaign_of(kind, obstacles, runs, seed, vehicle, preset, jobs, dask)
+        campaign = campaign_of(kind, obstacles, runs, seed, vehicle, preset, planner, jobs, dask)
         outcomes, files = [], []
         for outcome in progress(run(campaign, jobs=jobs, dask=dask), campaign):
             outcomes.append(outcome)

@@ -279,6 +279,7 @@ def _assemble(
         time_limit=table.time_limit_s,
         seed=table.seed,
         preset=table.preset,
+        planner=table.planner,
         vehicles=tuple(
             Member(i, member.name, tuple(points))
             for i, points, member in zip(ids[-len(missions) :], missions, table.vehicles, strict=False)

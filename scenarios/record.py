@@ -173,6 +173,7 @@ def run_facts(flown: Flown) -> dict[str, Any]:
         "scenario": flown.scenario.name,
         "seed": flown.seed,
         "preset": flown.parameters.name,
+        "planner": flown.parameters.optimiser,
         "avoidance": flown.avoidance,
         "ending": flown.ending,
         "time_limit_s": round(flown.scenario.limit, 3),

@@ -15,6 +15,7 @@ from scenarios.errors import ScenarioError
 from scenarios.flown import Flown, FlownVehicle, LoggedDecision, WallTime
 from scenarios.movers import Flyer, Mover
 from scenarios.pilots import Desk, FaultyPilot, Navigation
+from scenarios.planners import way_of
 from scenarios.radar import SimulatedRadar
 from scenarios.scenario import Member, Point, RadarSettings, Scenario, scatter, streams
 from scenarios.track import Track
@@ -145,8 +146,8 @@ class Flight:
         if self._avoidance:
             from avoidance.agent import Agent as Core  # noqa: PLC0415
 
-            told = informed(self._parameters, self._scenario.radar)
-            core = Core(vehicle.performance, told, generators["planner"])
+            told, way = way_of(informed(self._parameters, self._scenario.radar))
+            core = Core(vehicle.performance, told, generators["planner"], way)
         agent = WatchedAgent(core)
         pilot = Pilot(vehicle, radar, agent)
         if settings.position_error > 0.0 or settings.decision_latency > 0.0:

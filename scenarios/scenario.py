@@ -206,6 +206,8 @@ class Scenario:
     """All randomness of a flight comes from it, unless another one is given."""
     preset: str = "default"
     """Parameters of the avoidance core it is flown with, unless others are given."""
+    planner: str = "pso"
+    """Planner of ways round it is flown with, unless another is given."""
     geofence: tuple[FenceArea, ...] = ()
     """Where vehicles may be; empty for everywhere."""
     vehicles: tuple[Member, ...] = ()

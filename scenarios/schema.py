@@ -160,6 +160,22 @@ class FenceTable(Table):
         return self
 
 
+PlannerName = Literal[
+    "pso",
+    "gcpso",
+    "mpso",
+    "ga",
+    "sa",
+    "theta-mafoa",
+    "exact",
+    "pyswarms",
+    "scipy-de",
+    "ompl-rrtstar",
+    "ompl-bitstar",
+]
+"""The names of `scenarios.planners.PLANNERS`."""
+
+
 class ScenarioTable(Table):
     """A whole scenario file."""
 
@@ -170,6 +186,7 @@ class ScenarioTable(Table):
     time_limit_s: Annotated[float, Field(gt=0.0, le=1_000_000.0)] | None = None
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
     preset: Literal["default", "paper"] = "default"
+    planner: PlannerName = "pso"
     home: HomeTable = HomeTable()
     wind: WindTable = WindTable()
     radar: RadarTable = RadarTable()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from scenarios.cases import KINDS
 from scenarios.errors import Problem, ScenarioError
+from scenarios.planners import planned_by
 from scenarios.run import preset as preset_named
 from scenarios.scenario import FIDELITIES
 from scenarios.stress import LARGEST, Campaign
@@ -16,6 +17,7 @@ def campaign_of(
     seed: int,
     vehicle: str,
     preset: str,
+    planner: str | None,
     jobs: int | None,
     dask: str | None,
 ) -> Campaign:
@@ -46,7 +48,7 @@ def campaign_of(
         runs=runs,
         seed=seed,
         fidelity=FIDELITIES[vehicle],
-        parameters=preset_named(preset),
+        parameters=planned_by(preset_named(preset), planner),
     )
 
 

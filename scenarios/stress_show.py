@@ -67,7 +67,8 @@ def table(rows: Sequence[Row], campaign: Campaign) -> None:
         console.width = max(console.width, WIDEST)
     console.print(
         f"{campaign.kind}: {kind.words}; {campaign.runs} worlds each, seed {campaign.seed}, "
-        f"{campaign.fidelity} vehicle, preset {campaign.parameters.name}",
+        f"{campaign.fidelity} vehicle, preset {campaign.parameters.name}, "
+        f"planner {campaign.parameters.optimiser}",
         style="bold",
         highlight=False,
     )

@@ -24,6 +24,7 @@ def to_toml(scenario: Scenario) -> str:
             time_limit_s=scenario.time_limit,
             seed=scenario.seed,
             preset=scenario.preset,
+            planner=scenario.planner,
         ),
         _table(
             "[home]",

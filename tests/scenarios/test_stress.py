@@ -140,8 +140,8 @@ def test_the_table_is_for_a_stranger():
 
 def test_options_are_checked_together():
     with pytest.raises(ScenarioError) as caught:
-        campaign_of("statik", "1,x", 1, 0, "7dof", "default", 2, "tcp://there:1")
+        campaign_of("statik", "1,x", 1, 0, "7dof", "default", None, 2, "tcp://there:1")
     assert [p.key for p in caught.value.problems] == ["--kind", "--vehicle", "--obstacles", "--jobs"]
     with pytest.raises(ScenarioError, match="from 1"):
-        campaign_of("moving", "0", 1, 0, "6dof", "default", None, None)
-    assert campaign_of("static", "40,10,40", 1, 0, "6dof", "paper", None, None).counts == (10, 40)
+        campaign_of("moving", "0", 1, 0, "6dof", "default", None, None, None)
+    assert campaign_of("static", "40,10,40", 1, 0, "6dof", "paper", "ga", None, None).counts == (10, 40)

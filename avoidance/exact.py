@@ -1,0 +1,38 @@
+"""The exact planner in the swarm's place: the shortest route at once, instead of as the rescue."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from avoidance.ladder import Plan, exact_route, way_round
+from avoidance.problem import WaypointProblem
+from avoidance.types import Rung, Search
+
+NAME = "exact"
+"""What the planner is called."""
+
+
+def exact_way(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None:
+    """The shortest route of several waypoints; where there is none, or traffic is in it, the ladder's way.
+
+    Parameters
+    ----------
+    problem : WaypointProblem
+        What is asked; the constraints on single waypoints (g1, g2, g4) do not hold for routes.
+    rng : numpy.random.Generator
+        For the ladder.
+    """
+    route = exact_route(problem)
+    if route is None or problem.separation_shortfall(route) > 0.0:
+        return way_round(problem, rng)
+    search = Search(
+        start=problem.start,
+        target=problem.target,
+        centres=problem.centres,
+        radii=problem.keep,
+        planner=NAME,
+        found=route[0] if len(route) == 1 else None,
+        evaluations=1,
+        problem=problem,
+    )
+    return Plan(Rung.ROUTE, route, search)
