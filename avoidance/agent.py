@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from avoidance.conflicts import first_conflict
 from avoidance.detours import fly_round, search_problem
 from avoidance.escape import Escape
 from avoidance.holding import holding_orbit, holding_words, skipped
@@ -13,7 +14,7 @@ from avoidance.known import Known, keep_what_can_be_kept, known_obstacles
 from avoidance.ladder import Way, way_round, widest_way
 from avoidance.parameters import DEFAULT, Parameters
 from avoidance.replacement import Replacements
-from avoidance.route_check import Blocked, first_blocked_leg, first_conflict
+from avoidance.route_check import Blocked, first_blocked_leg
 from avoidance.tracking import Tracker
 from avoidance.types import (
     Decision,
@@ -125,7 +126,7 @@ class Agent:
         known = keep_what_can_be_kept(known, own, self._performance)
         blocked = first_blocked_leg(own, route, known, self._performance)
         if blocked is None:
-            blocked = first_conflict(own, route, known)
+            blocked = first_conflict(own, route, known, self._performance)
         if blocked is not None:
             return self._avoid(own, route, known, blocked)
         return self._resume(own, route, known)
@@ -133,7 +134,7 @@ class Agent:
     def _avoid(self, own: Ownship, route: Route, known: Known, blocked: Blocked) -> Decision:
         problem, begin, end = search_problem(own, route, known, blocked, self._performance, self._parameters)
         plan = self._way(problem, self._rng)
-        if plan is None and len(known.intruders.required):
+        if plan is None and len(known.intruders):
             plan = widest_way(problem, self._rng)
         if plan is not None:
             self._avoiding = frozenset(blocked.threat.ids)
@@ -174,7 +175,7 @@ class Agent:
         ahead = next(i for i, w in enumerate(route.waypoints) if w.item is not None)
         straight = Route(Waypoint(own.north, own.east, own.altitude), route.waypoints[ahead:])
         blocked = first_blocked_leg(own, straight, known, self._performance, slack=0.0)
-        if ahead == 0 or blocked or first_conflict(own, straight, known, resuming=True):
+        if ahead == 0 or blocked or first_conflict(own, straight, known, self._performance, resuming=True):
             return CLEAR
         who = obstacles(tuple(sorted(self._avoiding)))
         self._avoiding = frozenset()

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from avoidance.conflicts import wind_estimate
 from avoidance.known import Known
 from avoidance.ladder import Plan
 from avoidance.parameters import Parameters
@@ -71,6 +72,7 @@ def search_problem(
         avoided=avoided,
         intruders=known.intruders,
         delay=flown / performance.airspeed,
+        wind=wind_estimate(own, performance),
         performance=performance,
         parameters=parameters,
     )

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from avoidance.parameters import Parameters
-from avoidance.problem import Intruders
+from avoidance.prediction import Intruders
 from avoidance.tracking import Picture
 from avoidance.types import Bools, Floats, Ints, Ownship, Performance, Route
 
@@ -21,10 +21,6 @@ CLOSE = 2000.0
 """An unconfirmed contact nearer than this is believed at once [m]."""
 KNOWN_SPEED = 3.5
 """Whether a track moves is undecided while the standard deviation of its speed exceeds this [m/s]."""
-LONGEST_LOOK = 600.0
-"""The uncertainty of a predicted miss grows no longer than this [s]."""
-LARGEST_DOUBT = 400.0
-"""An uncertain prediction adds no more than this to what is kept [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -140,25 +136,20 @@ def known_obstacles(
 def _traffic(
     picture: Picture, moving: Bools, radii: Floats, own: Ownship, route: Route, parameters: Parameters
 ) -> dict[str, Any]:
-    """What moves, with what is to be kept: more, and called a conflict later, the less sure its path is."""
-    height = _outside_band(picture.positions[:, 2], own, route)
-    cut = np.sqrt(np.maximum(radii**2 - height**2, 0.0))
-    moving = moving & (cut > 0.0)
-    positions, velocities = picture.positions[moving, :2], picture.velocities[moving]
-    relative = positions - np.array([own.north, own.east])
-    closing = velocities - np.array([own.velocity_north, own.velocity_east])
-    square = np.maximum((closing**2).sum(axis=1), 1e-6)
-    time = np.clip(-(relative * closing).sum(axis=1) / square, 0.0, LONGEST_LOOK)
-    doubt = np.hypot(picture.sigma[moving], picture.speed_sigma[moving] * time)
-    least = cut[moving] + parameters.moving_margin
+    """What moves, unless it is so high or low that it cannot matter, and the doubt about it."""
+    flown = [own.altitude, *(waypoint.altitude for waypoint in route.waypoints[:3])]
     return {
         "intruder_ids": picture.ids[moving],
         "intruders": Intruders(
-            positions=positions,
-            velocities=velocities,
-            required=least + np.minimum(doubt, LARGEST_DOUBT),
-            conflict=np.maximum(least - 0.5 * parameters.moving_margin - doubt, 0.0),
-            radii=cut[moving],
+            positions=picture.positions[moving, :2],
+            velocities=picture.velocities[moving],
+            altitudes=picture.positions[moving, 2],
+            climbs=picture.climbs[moving],
+            radii=radii[moving],
+            sigma=picture.sigma[moving],
+            speed_sigma=picture.speed_sigma[moving],
+            band=(min(flown) - ALTITUDE_TOLERANCE, max(flown) + ALTITUDE_TOLERANCE),
+            margin=parameters.moving_margin,
         ),
     }
 
@@ -180,10 +171,3 @@ def keep_what_can_be_kept(known: Known, own: Ownship, performance: Performance) 
     if bool((nearest > known.radii + known.margin).all()):
         return known
     return replace(known, most=np.maximum(nearest - 1.0, 0.0))
-
-
-def _outside_band(altitudes: Floats, own: Ownship, route: Route) -> Floats:
-    """How far altitudes lie above or below those flown next [m]."""
-    flown = [own.altitude, *(waypoint.altitude for waypoint in route.waypoints[:3])]
-    low, high = min(flown) - ALTITUDE_TOLERANCE, max(flown) + ALTITUDE_TOLERANCE
-    return np.maximum(np.maximum(low - altitudes, altitudes - high), 0.0)

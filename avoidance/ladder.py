@@ -98,7 +98,12 @@ def widest_way(problem: WaypointProblem, rng: np.random.Generator) -> Plan | Non
     that stands still, if it keeps more from them than flying straight on.
     """
     intruders = problem.intruders
-    close = replace(intruders, required=np.minimum(intruders.required, intruders.radii + ROOM_LEFT))
+    close = replace(
+        intruders,
+        margin=min(intruders.margin, ROOM_LEFT),
+        sigma=np.zeros(len(intruders)),
+        speed_sigma=np.zeros(len(intruders)),
+    )
     plan = way_round(replace(problem, intruders=close), rng)
     if plan is not None:
         return plan

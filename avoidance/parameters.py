@@ -75,8 +75,10 @@ class Parameters:
     """Lateral guidance law the vehicle is to fly."""
     moving_radius: float = 1000.0
     """d: entering this distance from a moving obstacle is a violation."""
-    moving_margin: float = 300.0
-    """h: room for tracking and prediction on top of d."""
+    moving_margin: float = 100.0
+    """h: kept on top of d, and on top of the doubt about a prediction."""
+    wrong_side: float = 150.0
+    """A detour that leaves on its right who has the right of way must be shorter by this [m]."""
     reaction_distance: float = math.inf
     """Moving obstacles further away than this are watched, not avoided."""
     predict: bool = True

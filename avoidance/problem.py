@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -16,33 +16,14 @@ from avoidance.constraints import (
     turning_angle,
 )
 from avoidance.cost import path_length, risk
-from avoidance.flown import flown_segments
+from avoidance.flown import SEQUENCING_DELAY, flown_segments
 from avoidance.parameters import Parameters
-from avoidance.prediction import route_separation
-from avoidance.types import Floats, Ints, Performance
+from avoidance.prediction import Intruders, ground_speeds, separation_shortfall
+from avoidance.right_of_way import gives_way, wrong_side
+from avoidance.types import Bools, Floats, Ints, Performance
 
 INFEASIBLE = 1e9
 """Added to the violation of an infeasible candidate, so that every feasible one ranks before it."""
-
-
-def _no_points() -> Floats:
-    return np.empty((0, 2))
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Intruders:
-    """Moving obstacles as the search sees them."""
-
-    positions: Floats = field(default_factory=_no_points)
-    """North and east now [m], shape (q, 2)."""
-    velocities: Floats = field(default_factory=_no_points)
-    """Over ground [m/s], shape (q, 2)."""
-    required: Floats = field(default_factory=lambda: np.empty(0))
-    """What a new route keeps from each: d + h and the doubt about its path [m], shape (q,)."""
-    conflict: Floats = field(default_factory=lambda: np.empty(0))
-    """A route is left alone until it comes nearer than this [m], shape (q,)."""
-    radii: Floats = field(default_factory=lambda: np.empty(0))
-    """Distance that is a violation: d, or the radius that the sensor gave [m], shape (q,)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,6 +54,8 @@ class WaypointProblem:
     """Moving obstacles."""
     delay: float
     """Time until the vehicle is at the start [s]."""
+    wind: tuple[float, float]
+    """Steady wind, towards north and east [m/s]."""
     performance: Performance
     """What the vehicle can fly."""
     parameters: Parameters
@@ -85,7 +68,7 @@ class WaypointProblem:
         p = self.parameters
         length = path_length(points, self.start, self.target)
         danger = risk(points, self.centres, p.risk_distance, p.risk_squared_metres)
-        return p.path_weight * length + p.risk_weight * danger
+        return p.path_weight * (length + self._manners(points)) + p.risk_weight * danger
 
     def constraints(self, points: Floats) -> dict[str, Floats]:
         """How far each candidate of shape (n, 2) breaks each constraint [m], shape (n,) each."""
@@ -101,7 +84,7 @@ class WaypointProblem:
                 active["g4"] = flyable_turn(
                     points, self.start, self.target, self.course, self.performance.turn_radius
                 )
-        if len(self.intruders.required):
+        if len(self.intruders):
             active["g5"] = self._separated(points)
         return active
 
@@ -145,19 +128,56 @@ class WaypointProblem:
 
     def separation_shortfall(self, waypoints: Sequence[Sequence[float]]) -> float:
         """How much is missing to what is to be kept from intruders on a route by these waypoints [m]."""
-        if not len(self.intruders.required):
+        if not len(self.intruders):
             return 0.0
-        route = np.array([self.start, *waypoints, self.target], dtype=np.float64)[None]
-        moved = self.intruders.positions + self.delay * self.intruders.velocities
-        separation = route_separation(route, self.performance.airspeed, moved, self.intruders.velocities)
-        return float(max((self.intruders.required - separation).max(), 0.0))
+        route = self._after_run(np.array([*waypoints, self.target], dtype=np.float64)[None])
+        return float(separation_shortfall(route, self._speeds(route), self.intruders.after(self.delay))[0])
+
+    def traffic_rank(self, points: Floats) -> Floats:
+        """As `rank`, as if nothing stood still: length and separation alone, shape (n,)."""
+        shortfall = self._separated(points)
+        length = path_length(points, self.start, self.target) + self._manners(points)
+        return np.where(shortfall > 0.0, INFEASIBLE + shortfall, self.parameters.path_weight * length)
 
     def _separated(self, points: Floats) -> Floats:
-        route = np.empty((len(points), 3, 2))
-        route[:, 0], route[:, 1], route[:, 2] = self.start, points, self.target
-        moved = self.intruders.positions + self.delay * self.intruders.velocities
-        separation = route_separation(route, self.performance.airspeed, moved, self.intruders.velocities)
-        return np.asarray(np.maximum((self.intruders.required - separation).max(axis=1), 0.0))
+        route = self._by(points)
+        return separation_shortfall(route, self._speeds(route), self.intruders.after(self.delay))
+
+    def _manners(self, points: Floats) -> Floats | float:
+        """Length that passing on the wrong side is counted as [m], shape (n,)."""
+        intruders = self.intruders
+        yielding = self._yielding if len(intruders) else None
+        if yielding is None or not yielding.any():
+            return 0.0
+        route = self._by(points)
+        wrong = wrong_side(route, self._speeds(route), intruders.after(self.delay), yielding)
+        return self.parameters.wrong_side * wrong
+
+    @property
+    def _yielding(self) -> Bools:
+        """Those of the intruders that the own vehicle gives way to."""
+        north, east = self.target[0] - self.start[0], self.target[1] - self.start[1]
+        return gives_way(math.atan2(east, north), self.start, self.intruders.after(self.delay))
+
+    def _by(self, points: Floats) -> Floats:
+        """The routes by each of some points to the target, shape (n, k, 2)."""
+        onward = np.empty((len(points), 2, 2))
+        onward[:, 0], onward[:, 1] = points, self.target
+        return self._after_run(onward)
+
+    def _after_run(self, onward: Floats) -> Floats:
+        """What is flown first: straight on until the turn has begun; then `onward`, shape (n, k, 2)."""
+        first = [self.start]
+        if self.course is not None:
+            run = self.performance.airspeed * (SEQUENCING_DELAY + 0.5 * self.performance.roll_time)
+            ahead = (run * math.cos(self.course), run * math.sin(self.course))
+            first.append((self.start[0] + ahead[0], self.start[1] + ahead[1]))
+        route = np.empty((len(onward), len(first) + onward.shape[1], 2))
+        route[:, : len(first)], route[:, len(first) :] = first, onward
+        return route
+
+    def _speeds(self, route: Floats) -> Floats | float:
+        return ground_speeds(np.diff(route, axis=1), self.performance.airspeed, self.wind)
 
 
 def straight_cost(problem: WaypointProblem) -> float:

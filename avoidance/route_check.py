@@ -1,24 +1,19 @@
-"""Is the remaining route clear? If not, which leg is blocked first, and by what (Algorithms 5 to 7)."""
+"""Is the remaining route clear? If not, which leg is blocked first, and by what (Algorithms 5 and 6)."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
 from avoidance.flown import flown_segments
 from avoidance.geometry import segments_clearance
 from avoidance.known import Known
-from avoidance.prediction import route_separation
-from avoidance.problem import Intruders
 from avoidance.types import Floats, Ints, Ownship, Performance, Route, Threat
 
 LEVEL = 5.0
 """A vehicle this near to the altitude of its waypoint flies level [m]."""
-INTRUDER_HORIZON = 900.0
-"""Intruders are extrapolated no further than this [s]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -136,46 +131,6 @@ def _altitude_bands(own: Ownship, route: Route) -> dict[tuple[float, float], lis
     return bands
 
 
-def first_conflict(own: Ownship, route: Route, known: Known, resuming: bool = False) -> Blocked | None:
-    """The first leg on which an intruder comes too close, or None; a route taken up anew keeps more.
-
-    Notes
-    -----
-    Algorithm 7. Differs from the paper: a shrinking distance alone proves nothing; the closest point of
-    approach along the whole route is taken.
-    """
-    intruders = known.intruders
-    if not len(intruders.required) or not route.waypoints:
-        return None
-    points = np.array([(own.north, own.east), *((w.north, w.east) for w in route.waypoints)])[None]
-    speed = max(own.ground_speed, 1.0)
-    limit = intruders.required if resuming else intruders.conflict
-    worst: Blocked | None = None
-    for last in range(2, points.shape[1] + 1):
-        separation = route_separation(
-            points[:, :last], speed, intruders.positions, intruders.velocities, INTRUDER_HORIZON
-        )[0]
-        close = np.flatnonzero(separation < limit)
-        if len(close):
-            order = close[np.argsort(separation[close], kind="stable")]
-            nearest = int(order[0])
-            time, distance = _closest_approach(speed, points[0, :last], intruders, nearest)
-            threat = Threat(
-                ids=tuple(int(i) for i in known.intruder_ids[order]),
-                leg=last - 2,
-                distance=distance,
-                time=time,
-                clearance=float(separation[nearest]),
-                required=float(intruders.required[nearest]),
-                moving=True,
-            )
-            worst = Blocked(threat, last - 2, np.empty(0, dtype=np.int64))
-            break
-        if _length(points[0, :last]) > speed * INTRUDER_HORIZON:
-            break
-    return worst
-
-
 def _leg_of_segment(corners: int, inserted: int) -> Ints:
     """Which leg each of the segments of `flown_segments` belongs to."""
     legs = np.arange(corners - 1)
@@ -194,25 +149,6 @@ def _entry_distances(begin: Floats, end: Floats, centres: Floats, radii: Floats)
     across = unit[0] * offset[:, 1] - unit[1] * offset[:, 0]
     half = np.sqrt(np.maximum(radii**2 - across**2, 0.0))
     return np.asarray(np.clip(forward - half, 0.0, length))
-
-
-def _closest_approach(speed: float, points: Floats, intruders: Intruders, index: int) -> tuple[float, float]:
-    """Time until, and own distance flown to, the closest point of approach to one intruder."""
-    position, velocity = intruders.positions[index], intruders.velocities[index]
-    clock, best, when = 0.0, math.inf, 0.0
-    for begin, end in pairwise(points):
-        leg = float(np.hypot(*(end - begin)))
-        if leg < 1e-9:
-            continue
-        closing = speed * (end - begin) / leg - velocity
-        relative = begin - position - velocity * clock
-        square = max(float(closing @ closing), 1e-12)
-        moment = float(np.clip(-(relative @ closing) / square, 0.0, leg / speed))
-        miss = float(np.hypot(*(relative + closing * moment)))
-        if miss < best:
-            best, when = miss, clock + moment
-        clock += leg / speed
-    return when, when * speed
 
 
 def _length(points: Floats) -> float:

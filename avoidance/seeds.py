@@ -16,6 +16,7 @@ from avoidance.cost import path_length
 from avoidance.geometry import segment_point_distance, segments_clearance
 from avoidance.problem import INFEASIBLE, WaypointProblem
 from avoidance.refine import refined
+from avoidance.traffic_seeds import traffic_seeds
 from avoidance.types import Bools, Floats, Ints
 
 OUTSIDE = 0.02
@@ -107,11 +108,11 @@ def rule_seeds(problem: WaypointProblem, count: int) -> tuple[Floats, int]:
     feasible (the turn on to the first leg can ask for more room than the curves give) points in a fan are
     tried.
     """
-    if not len(problem.avoided) and not len(problem.intruders.required):
+    if not len(problem.avoided) and not len(problem.intruders):
         return _fan(problem)[:count], 0
     seeds, ranks, tested = _best_first(problem, _candidates(problem), count)
     rounds = ROUNDS
-    if ranks[0] >= INFEASIBLE and not len(problem.intruders.required):
+    if ranks[0] >= INFEASIBLE:
         seeds, ranks, more = _best_first(problem, np.concatenate([seeds, _fan(problem)]), count)
         tested += more
         rounds = ROUNDS_FROM_AFAR
@@ -125,7 +126,7 @@ def rule_seeds(problem: WaypointProblem, count: int) -> tuple[Floats, int]:
 def _candidates(problem: WaypointProblem) -> Floats:
     """Points where curves that bound the feasible set meet, shape (m, 2)."""
     near = _near(problem)
-    candidates = [_fan(problem)] if len(problem.intruders.required) else []
+    candidates = [traffic_seeds(problem)] if len(problem.intruders) else []
     if len(near):
         centres = problem.centres[near]
         keep = problem.keep[near]

@@ -48,6 +48,8 @@ class Picture:
     """North, east, altitude [m], shape (n, 3)."""
     velocities: Floats
     """North, east over ground [m/s], 0 for what stands still, shape (n, 2)."""
+    climbs: Floats
+    """Climb rate [m/s], 0 unless significant, shape (n,)."""
     radii: Floats
     """Safety radius RS that the sensor gave [m], NaN where it gave none, shape (n,)."""
     sigma: Floats
@@ -281,6 +283,7 @@ class Tracker:
             ids=self._ids.copy(),
             positions=positions,
             velocities=np.where(moving[:, None], self._state[:, 2:], 0.0),
+            climbs=np.zeros(len(moving)),
             radii=self._radius.copy(),
             sigma=sigma,
             speed_sigma=self._speed_sigma(),
@@ -313,6 +316,7 @@ class Tracker:
             ids=scan.ids,
             positions=scan.positions,
             velocities=np.zeros((count, 2)),
+            climbs=np.zeros(count),
             radii=scan.radii,
             sigma=np.zeros(count),
             speed_sigma=np.zeros(count),

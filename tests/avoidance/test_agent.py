@@ -11,7 +11,7 @@ from avoidance.flown import flown_segments
 from avoidance.geometry import segments_clearance
 from avoidance.parameters import DEFAULT, PRESETS
 from avoidance.prediction import route_separation
-from tests.avoidance.worlds import PERFORMANCE, ownship, route, scan
+from tests.avoidance.worlds import PERFORMANCE, intruders, ownship, route, scan
 
 
 def decide(
@@ -163,5 +163,4 @@ def test_an_obstacle_and_an_intruder_together() -> None:
         decision = agent.decide(ownship(15.0 * second, time=second), route((40_000.0, 0.0)), seen)
     assert decision.route is not None
     points = np.array([(45.0, 0.0), *((w.north, w.east) for w in decision.route)])
-    place, velocity = np.array([[9455.0, 0.0]]), np.array([[-15.0, 0.0]])
-    assert route_separation(points[None], 15.0, place, velocity)[0, 0] > 1000.0
+    assert route_separation(points[None], 15.0, intruders((9455.0, 0.0, -15.0, 0.0)))[0, 0] > 1000.0

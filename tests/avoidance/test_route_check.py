@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from avoidance import Ownship, RadarScan, Route
 from avoidance.known import Known, keep_what_can_be_kept, known_obstacles
 from avoidance.parameters import DEFAULT
-from avoidance.problem import Intruders
-from avoidance.route_check import first_blocked_leg, first_conflict
+from avoidance.route_check import first_blocked_leg
 from avoidance.tracking import Tracker
 from tests.avoidance.worlds import PERFORMANCE, ownship, route, scan
 
@@ -71,18 +68,3 @@ def test_circles_shrink_where_the_margin_cannot_be_kept_any_more() -> None:
     own, way = ownship(), route((40_000.0, 0.0))
     near = keep_what_can_be_kept(known([(0.0, 1020.0)], own, way), own, PERFORMANCE).circles(200.0, 200.0)
     assert near.keep[0] == pytest.approx(1019.0)
-
-
-def test_a_conflict_names_time_and_distance() -> None:
-    own, way = ownship(), route((40_000.0, 0.0))
-    oncoming = Intruders(
-        np.array([[9000.0, 200.0]]), np.array([[-15.0, 0.0]]), np.array([1300.0]), np.array([1150.0])
-    )
-    empty = known([], own, way)
-    world = replace(empty, intruder_ids=np.array([7]), intruders=oncoming)
-    blocked = first_conflict(own, way, world)
-    assert blocked is not None
-    assert blocked.threat.moving
-    assert blocked.threat.ids == (7,)
-    assert blocked.threat.time == pytest.approx(300.0)
-    assert blocked.threat.clearance == pytest.approx(200.0)

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from avoidance.parameters import DEFAULT, PAPER, Parameters
-from avoidance.problem import INFEASIBLE, Intruders
+from avoidance.problem import INFEASIBLE
 from avoidance.search import search_waypoint
 from avoidance.seeds import rule_seeds, sphere_seeds
 from avoidance.yardsticks import best_waypoint, length_to_optimum, search_gap
-from tests.avoidance.worlds import problem
+from tests.avoidance.worlds import intruders, problem
 
 SINGLE = [(9000.0, 400.0)]
 HILL = [(9000.0, 400.0), (9300.0, 300.0), (9600.0, 500.0)]
@@ -67,8 +67,7 @@ def test_infeasible_candidates_rank_after_feasible_ones() -> None:
 
 def test_a_waypoint_is_kept_clear_of_an_intruder() -> None:
     """Head-on at the same speed: the detour keeps d + h all along."""
-    oncoming = Intruders(np.array([[9000.0, 0.0]]), np.array([[-15.0, 0.0]]), np.array([1300.0]))
-    question = problem([], target=(30_000.0, 0.0), intruders=oncoming)
+    question = problem([], target=(30_000.0, 0.0), intruders=intruders((9000.0, 0.0, -15.0, 0.0)))
     search = search_waypoint(question, np.random.default_rng(0))
     assert search.found is not None
     assert question.constraints(np.array([search.found]))["g5"][0] == 0.0

@@ -8,7 +8,8 @@ import numpy as np
 
 from avoidance import Ownship, Performance, RadarScan, Route, Waypoint
 from avoidance.parameters import DEFAULT, Parameters
-from avoidance.problem import Intruders, WaypointProblem
+from avoidance.prediction import Intruders
+from avoidance.problem import WaypointProblem
 
 PERFORMANCE = Performance(
     airspeed=15.0, max_bank=math.radians(30.0), roll_time=1.0, acceptance_radius=100.0, tracking_error=5.0
@@ -47,6 +48,23 @@ def scan(
     return RadarScan(time, np.arange(1, count + 1), table.reshape(-1, 3), np.full(count, radius))
 
 
+def intruders(*rows: tuple[float, float, float, float], margin: float = 100.0) -> Intruders:
+    """Surely tracked intruders at flight altitude: north, east and their rates."""
+    table = np.array(rows, dtype=np.float64)
+    none = np.zeros(len(rows))
+    return Intruders(
+        positions=table[:, :2],
+        velocities=table[:, 2:],
+        altitudes=none + 200.0,
+        climbs=none,
+        radii=none + 1000.0,
+        sigma=none,
+        speed_sigma=none,
+        band=(185.0, 215.0),
+        margin=margin,
+    )
+
+
 def problem(
     centres: list[tuple[float, float]],
     target: tuple[float, float] = (70_000.0, 0.0),
@@ -68,6 +86,7 @@ def problem(
         avoided=np.arange(count),
         intruders=Intruders() if intruders is None else intruders,
         delay=0.0,
+        wind=(0.0, 0.0),
         performance=PERFORMANCE,
         parameters=parameters,
         relaxed=relaxed,

@@ -1,0 +1,90 @@
+"""Does the route come too near to something that moves (Algorithm 7)?"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from avoidance.known import Known
+from avoidance.prediction import ground_speeds, leg_approaches
+from avoidance.route_check import Blocked
+from avoidance.types import Floats, Ownship, Performance, Route, Threat
+
+INTRUDER_HORIZON = 900.0
+"""Intruders are extrapolated no further than this [s]."""
+WIND_DOUBT = 2.0
+"""A wind estimate stronger than the bound by more than this is not believed [m/s]."""
+
+
+def wind_estimate(own: Ownship, performance: Performance) -> tuple[float, float]:
+    """Wind by the difference of ground velocity and airspeed, towards north and east [m/s].
+
+    None where the vehicle allows for none, or where the state cannot be right: the heading may be missing.
+    """
+    if performance.wind_bound <= 0.0:
+        return 0.0, 0.0
+    north = own.velocity_north - own.airspeed * math.cos(own.heading)
+    east = own.velocity_east - own.airspeed * math.sin(own.heading)
+    if math.hypot(north, east) > performance.wind_bound + WIND_DOUBT:
+        return 0.0, 0.0
+    return north, east
+
+
+def first_conflict(
+    own: Ownship, route: Route, known: Known, performance: Performance, *, resuming: bool = False
+) -> Blocked | None:
+    """The first leg on which an intruder comes too close, or None.
+
+    Parameters
+    ----------
+    own, route, known, performance
+        The vehicle, what it is to fly, what it knows, what it can.
+    resuming : bool
+        True for a route that is to be taken up: it keeps d + h and the doubt about the prediction. One that
+        is being flown is left alone unless it surely comes nearer than d + h/2.
+
+    Notes
+    -----
+    Algorithm 7. Differs from the paper: a shrinking distance alone proves nothing; the closest point of
+    approach along the whole route is taken.
+    """
+    intruders = known.intruders
+    if not len(intruders) or not route.waypoints:
+        return None
+    points = _within_horizon(own, route, performance.airspeed)
+    speeds = ground_speeds(np.diff(points, axis=1), performance.airspeed, wind_estimate(own, performance))
+    separation, times = leg_approaches(points, speeds, intruders, INTRUDER_HORIZON)
+    doubt = intruders.doubt(times)
+    wanted = intruders.radii + intruders.margin
+    limit = wanted + doubt if resuming else np.maximum(wanted - 0.5 * intruders.margin - doubt, 0.0)
+    close = (separation < limit)[0]
+    if not close.any():
+        return None
+    leg = int(np.argmax(close.any(axis=1)))
+    who = np.flatnonzero(close[leg])
+    who = who[np.argsort(separation[0, leg, who], kind="stable")]
+    nearest = int(who[0])
+    time = float(times[0, leg, nearest])
+    threat = Threat(
+        ids=tuple(int(i) for i in known.intruder_ids[who]),
+        leg=leg,
+        distance=time * max(own.ground_speed, 1.0),
+        time=time,
+        clearance=float(separation[0, leg, nearest]),
+        required=float(wanted[nearest] + doubt[0, leg, nearest]),
+        moving=True,
+    )
+    return Blocked(threat, leg, np.empty(0, dtype=np.int64))
+
+
+def _within_horizon(own: Ownship, route: Route, airspeed: float) -> Floats:
+    """The part of the route that intruders are extrapolated for, shape (1, k, 2) [m]."""
+    points = [(own.north, own.east)]
+    ahead = 0.0
+    for waypoint in route.waypoints:
+        points.append((waypoint.north, waypoint.east))
+        ahead += math.dist(points[-2], points[-1])
+        if ahead > 2.0 * airspeed * INTRUDER_HORIZON:  # downwind it gets no further
+            break
+    return np.array(points)[None]

@@ -1,0 +1,68 @@
+"""Which leg an intruder makes unsafe, when, and how sure that must be."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from avoidance import Ownship, RadarScan, Route
+from avoidance.conflicts import first_conflict, wind_estimate
+from avoidance.known import Known, known_obstacles
+from avoidance.parameters import DEFAULT
+from avoidance.prediction import Intruders
+from avoidance.tracking import Tracker
+from tests.avoidance.worlds import PERFORMANCE, intruders, ownship, route
+
+
+def with_traffic(own: Ownship, way: Route, traffic: Intruders) -> Known:
+    """What a vehicle knows that sees these intruders and nothing else."""
+    empty = Tracker(DEFAULT).update(RadarScan.of(0.0, []), own)
+    known = known_obstacles(empty, own, way, PERFORMANCE, DEFAULT)
+    return replace(known, intruder_ids=np.arange(7, 7 + len(traffic)), intruders=traffic)
+
+
+def test_a_conflict_names_time_and_distance() -> None:
+    own, way = ownship(), route((40_000.0, 0.0))
+    blocked = first_conflict(
+        own, way, with_traffic(own, way, intruders((9000.0, 200.0, -15.0, 0.0))), PERFORMANCE
+    )
+    assert blocked is not None
+    assert blocked.threat.moving
+    assert blocked.threat.ids == (7,)
+    assert blocked.threat.time == pytest.approx(300.0)
+    assert blocked.threat.distance == pytest.approx(4500.0)
+    assert blocked.threat.clearance == pytest.approx(200.0)
+    assert blocked.threat.required == pytest.approx(1100.0)
+
+
+def test_the_leg_is_named_on_which_it_happens() -> None:
+    own, way = ownship(), route((3000.0, 0.0), (3000.0, 30_000.0))
+    blocked = first_conflict(
+        own, way, with_traffic(own, way, intruders((3200.0, 12_000.0, 0.0, -15.0))), PERFORMANCE
+    )
+    assert blocked is not None
+    assert blocked.leg == 1
+
+
+def test_a_doubtful_conflict_is_no_reason_to_leave_a_route_but_one_not_to_take_it_up() -> None:
+    own, way = ownship(), route((40_000.0, 0.0))
+    passing = intruders((9000.0, 900.0, -15.0, 0.0))
+    assert first_conflict(own, way, with_traffic(own, way, passing), PERFORMANCE) is not None
+    unsure = with_traffic(own, way, replace(passing, speed_sigma=np.array([1.0])))
+    assert first_conflict(own, way, unsure, PERFORMANCE) is None
+    assert first_conflict(own, way, unsure, PERFORMANCE, resuming=True) is not None
+
+
+def test_wind_changes_where_two_meet() -> None:
+    """Into a wind of 5 m/s the crossing intruder has passed when the vehicle gets there."""
+    windy = replace(PERFORMANCE, wind_bound=5.0)
+    calm = ownship()
+    into = replace(calm, velocity_north=10.0)
+    way = route((40_000.0, 0.0))
+    crossing = intruders((6000.0, 6000.0, 0.0, -15.0))
+    assert wind_estimate(into, windy) == pytest.approx((-5.0, 0.0))
+    assert wind_estimate(replace(into, heading=2.0), windy) == (0.0, 0.0)
+    assert first_conflict(calm, way, with_traffic(calm, way, crossing), windy) is not None
+    assert first_conflict(into, way, with_traffic(into, way, crossing), windy) is None
