@@ -14,6 +14,8 @@ import numpy as np
 
 from avoidance.types import Bools, Floats
 
+FEW = 12
+"""So few centres are not worth sorting out."""
 Point: TypeAlias = Sequence[float] | Floats
 """A point as any indexable pair (north, east) [m]."""
 
@@ -94,8 +96,11 @@ def within_reach(points: Floats, centres: Floats, reach: Floats | float) -> Bool
     Returns
     -------
     Bools
-        False only where no point is that near, shape (n,).
+        False only where no point is that near, shape (n,); True for all where sorting them out would cost
+        more than it saves.
     """
+    if len(centres) <= FEW:
+        return np.ones(len(centres), dtype=bool)
     (low_north, low_east), (high_north, high_east) = points.min(axis=0), points.max(axis=0)
     north, east = centres[:, 0], centres[:, 1]
     return np.asarray(

@@ -29,7 +29,7 @@ class SwarmSettings:
     """True: the personal best is the iteration's one best, as Fig. 16 prints it (erratum E28)."""
     stop_change: float = 1e-5
     """Stop when the best changes by less than this ..."""
-    stop_iterations: int = 3
+    stop_iterations: int = 2
     """... in as many iterations running."""
 
 
