@@ -18,7 +18,7 @@ SOURCES = (
     "trim.c", "turbulence.c", "values.c",
 )  # fmt: skip
 """Translation units of the model, beside the generated `variables.c`. One library serves both versions."""
-HEADERS = ("component.h", "fmi2.h", "fmi3.h", "model.h")
+HEADERS = ("angles.h", "component.h", "fmi2.h", "fmi3.h", "model.h")
 """Headers beside the generated `variables.h`."""
 GENERATED = "variables.c"
 """Translation unit that is made from the table."""

@@ -78,11 +78,12 @@ void model_sample(Model *m) {
     double period = (double)sample_period(m) * 1e-9;
     m->next_sample = (m->now / sample_period(m) + 1) * sample_period(m);
     atmosphere_sample(m);
-    if (!is_sampled(m) || m->flight != FLIGHT_FLYING) return;
+    bool guided = m->v.command_mode != MODE_DIRECT || is_kinematic(m), gusty = m->v.turbulence_wind_speed > 0.0;
+    if (m->flight != FLIGHT_FLYING || !(guided || gusty)) return;
     Motion motion;
     model_motion(m, &motion);
-    turbulence_sample(m, &motion, period);
-    if (m->v.command_mode == MODE_DIRECT && !is_kinematic(m)) return;
+    if (gusty) turbulence_sample(m, &motion, period);
+    if (!guided) return;
     guidance_sample(m, &motion, period);
     if (!is_kinematic(m)) autopilot_sample(m, &motion, period);
 }

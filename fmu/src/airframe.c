@@ -42,7 +42,7 @@ double lift_coefficient(const Variables *v, double alpha, double *slope) {
 double drag_coefficient(const Variables *v, double alpha, double beta, double elevator) {
     double a = clamp(alpha, v->aircraft_aero_alpha_min, v->aircraft_aero_alpha_max);
     double plate = 0.0;
-    if (a != alpha) {
+    if (RARELY(a != alpha)) {
         double s = sin(alpha), s0 = sin(a);
         plate = s * s > s0 * s0 ? 2.0 * (s * s - s0 * s0) : 0.0; /* never a push, also flying backwards */
     }
@@ -56,7 +56,7 @@ double gravity_at(const Variables *v, double altitude) {
     return v->environment_gravity - v->environment_gravity_gradient * (v->environment_home_elevation + altitude);
 }
 
-static void wind_in_body(const Model *m, const double R[9], double wind[3]) {
+static inline void wind_in_body(const Model *m, const double R[9], double wind[3]) {
     const double *gust = m->turbulence.gust;
     double ned[3] = {m->v.wind_north + gust[0], m->v.wind_east + gust[1], m->v.wind_down + gust[2]};
     if (ned[0] == 0.0 && ned[1] == 0.0 && ned[2] == 0.0) wind[0] = wind[1] = wind[2] = 0.0;
@@ -76,7 +76,7 @@ static inline void airframe_loads(const Model *m, const double x[], const double
     if (airspeed < SLOWEST) return;
 
     double per_airspeed = 1.0 / airspeed;
-    double alpha = atan2(w, u), beta = asin(clamp(side * per_airspeed, -1.0, 1.0));
+    double alpha = angle_of(w, u), beta = angle_of_sine(side * per_airspeed);
     loads->alpha = alpha;
     loads->beta = beta;
     loads->stalled = alpha < v->aircraft_aero_alpha_min || alpha > v->aircraft_aero_alpha_max;
@@ -173,7 +173,7 @@ void airframe_derivative(const Model *m, const double x[], double dx[], Loads *l
     dx[X_NORTH] = ned[0];
     dx[X_EAST] = ned[1];
     dx[X_ALTITUDE] = -ned[2];
-    if (m->flight != FLIGHT_FLYING) {
+    if (RARELY(m->flight != FLIGHT_FLYING)) {
         ground_motion(m, x, R, loads, dx);
         return;
     }
@@ -197,8 +197,9 @@ void airframe_derivative(const Model *m, const double x[], double dx[], Loads *l
     dx[X_Q] = k->c5 * p * r - k->c6 * (p * p - r * r) + k->c7 * moment[1];
     dx[X_R] = (k->c8 * p - k->c2 * r) * q + k->c4 * moment[0] + k->c9 * moment[2];
 
-    if (v->environment_earth_rate != 0.0 || v->environment_earth_curvature != 0.0) earth_turns(m, x, R, ned, dx);
-    if (m->continuous) keep_unit_length(x, dx);
+    if (RARELY(v->environment_earth_rate != 0.0 || v->environment_earth_curvature != 0.0))
+        earth_turns(m, x, R, ned, dx);
+    if (RARELY(m->continuous)) keep_unit_length(x, dx);
 }
 
 /* One Runge-Kutta step of order four; the quaternion is brought back to unit length. */
@@ -240,8 +241,8 @@ void airframe_motion(const Model *m, Motion *o) {
     o->climb = -ned[2];
     o->airspeed = sqrt(u * u + side * side + w * w);
     o->beta = o->airspeed > SLOWEST ? clamp(side / o->airspeed, -1.0, 1.0) : 0.0; /* its sine: near enough */
-    o->bank = atan2(R[7], R[8]);
-    o->pitch = -asin(clamp(R[6], -1.0, 1.0));
+    o->bank = angle_of(R[7], R[8]);
+    o->pitch = -angle_of_sine(R[6]);
     double cos_pitch = sqrt(R[7] * R[7] + R[8] * R[8]), per = cos_pitch > 1e-9 ? 1.0 / cos_pitch : 0.0;
     o->sin_bank = R[7] * per;
     o->cos_bank = cos_pitch > 1e-9 ? R[8] * per : 1.0;
@@ -255,7 +256,7 @@ void airframe_angles(const Model *m, Motion *o) {
     double R[9], wind[3];
     rotation_matrix(m->x + X_Q0, R);
     wind_in_body(m, R, wind);
-    o->beta = asin(o->beta);
-    o->alpha = o->airspeed > SLOWEST ? atan2(m->x[X_W] - wind[2], m->x[X_U] - wind[0]) : 0.0;
+    o->beta = angle_of_sine(o->beta);
+    o->alpha = o->airspeed > SLOWEST ? angle_of(m->x[X_W] - wind[2], m->x[X_U] - wind[0]) : 0.0;
     o->heading = atan2(R[3], R[0]);
 }

@@ -15,7 +15,7 @@
 /* Sine of an angle of attack: its series, to 2e-7 within 0.4 rad. */
 static inline double sine(double a) {
     double a2 = a * a;
-    return a2 < 0.16 ? a * (1.0 - a2 * (1.0 / 6.0 - a2 * (1.0 / 120.0))) : sin(a);
+    return RARELY(a2 >= 0.16) ? sin(a) : a * (1.0 - a2 * (1.0 / 6.0 - a2 * (1.0 / 120.0)));
 }
 
 /* Integrals zero, and the feed-forward where level flight has it. */
@@ -70,7 +70,7 @@ static inline double elevator(Model *m, const Motion *o, double per_airspeed, do
     a->alpha = clamp(a->alpha, v->aircraft_aero_alpha_min, v->aircraft_aero_alpha_max);
     a->sin_alpha = sine(a->alpha);
 
-    double path = asin(rise), error = (rise - clamp(o->climb * per_airspeed, -0.9, 0.9)) / level;
+    double path = angle_of_sine(rise), error = (rise - clamp(o->climb * per_airspeed, -0.9, 0.9)) / level;
     if (fabs(error) < CLIMB_INTEGRAL_BAND)
         a->climb = clamp(a->climb + period * v->aircraft_control_climb_integral_gain * error, -0.1, 0.1);
     double pitch = path + a->alpha * cb + o->beta * sb + v->aircraft_control_climb_gain * error + a->climb;
@@ -100,7 +100,7 @@ void autopilot_sample(Model *m, const Motion *o, double period) {
     double pressure_area = 0.5 * m->air.density * airspeed * airspeed * v->aircraft_wing_area;
     double per_airspeed = 1.0 / airspeed, rise = clamp(m->demand.climb * per_airspeed, -0.5, 0.5);
     m->actuator[0] = aileron(m, o, per_airspeed, period);
+    m->actuator[3] = throttle(m, o, pressure_area, rise, m->x[X_ELEVATOR], period); /* with the last angle of attack */
     m->actuator[1] = elevator(m, o, per_airspeed, pressure_area, rise, period);
     m->actuator[2] = rudder(m, o, airspeed, period);
-    m->actuator[3] = throttle(m, o, pressure_area, rise, m->x[X_ELEVATOR], period);
 }

@@ -71,37 +71,35 @@ static double bank_by_paper(Model *m, const LegGeometry *l, double period) {
     return g->bank_command_deg / DEGREES;
 }
 
-static double bank_for(const Model *m, double lateral_acceleration) {
+static inline double bank_for(const Model *m, double lateral_acceleration) {
     const Variables *v = &m->v;
     double limit = v->guidance_max_bank, scale = v->aircraft_kinematic_turn_factor * m->gravity;
     if (scale <= 0.0) return 0.0; /* without weight no bank turns anything */
-    return clamp(atan(lateral_acceleration / scale), -limit, limit);
+    return clamp(angle_of(lateral_acceleration, scale), -limit, limit);
 }
 
-/* Look-ahead distance [m] for a damping and period (Park et al. 2004; Curry's form in ArduPilot). */
-static double l1_distance(const Variables *v, double ground_speed) {
-    return v->guidance_l1_damping * v->guidance_l1_period * ground_speed * (1.0 / PI);
-}
+/* Inverse of the look-ahead time L1/V [1/s] for a damping and period (Park et al. 2004; Curry's form in ArduPilot). */
+static double per_l1_time(const Variables *v) { return PI / (v->guidance_l1_damping * v->guidance_l1_period); }
 
 /* Lateral acceleration that turns the ground velocity by an angle: K V2/L1 sin(angle), K = 4 damping2, and no
  * less than at a right angle beyond one. Near a reversal of course the side that was chosen first is kept.
  * The angle is given by sine and cosine: no angle need be found. */
-static double l1_acceleration(Model *m, double speed, double distance, double sine, double cosine) {
+static double l1_acceleration(Model *m, double speed, double sine, double cosine) {
     GuidanceMemory *g = &m->guidance;
-    double gain = 4.0 * m->v.guidance_l1_damping * m->v.guidance_l1_damping, side = sine < 0.0 ? -1.0 : 1.0;
+    double damping = m->v.guidance_l1_damping, side = sine < 0.0 ? -1.0 : 1.0;
     if (cosine > REVERSAL) g->turn_sign = 0.0;
     else if (g->turn_sign == 0.0) g->turn_sign = side;
     else side = g->turn_sign;
-    return gain * speed * speed / distance * (cosine >= 0.0 ? sine : side);
+    return 4.0 * damping * damping * per_l1_time(&m->v) * speed * (cosine >= 0.0 ? sine : side);
 }
 
 static double bank_by_l1(Model *m, const LegGeometry *l) {
     double speed = sqrt(l->along_speed * l->along_speed + l->cross_speed * l->cross_speed);
     if (speed < 0.1) speed = 0.1;
-    double distance = l1_distance(&m->v, speed);
-    double si = -clamp(l->cross_track / distance, -STEEPEST, STEEPEST), ci = sqrt(1.0 - si * si); /* intercept */
-    double per = 1.0 / speed, sc = l->cross_speed * per, cc = l->along_speed * per;               /* course */
-    return bank_for(m, l1_acceleration(m, speed, distance, si * cc - ci * sc, ci * cc + si * sc));
+    double per = 1.0 / speed, sc = l->cross_speed * per, cc = l->along_speed * per; /* course */
+    double intercept = l->cross_track * per * per_l1_time(&m->v);
+    double si = -clamp(intercept, -STEEPEST, STEEPEST), ci = sqrt(1.0 - si * si);
+    return bank_for(m, l1_acceleration(m, speed, si * cc - ci * sc, ci * cc + si * sc));
 }
 
 /* A course field that winds on to the circle, flown with the L1 law, plus the circle's own acceleration. */
@@ -112,17 +110,17 @@ static double bank_for_orbit(Model *m, const Motion *o) {
     double direction = v->command_orbit_direction < 0.0 ? -1.0 : 1.0;
     double speed = sqrt(o->velocity_north * o->velocity_north + o->velocity_east * o->velocity_east);
     if (speed < 0.1) speed = 0.1;
-    double distance = l1_distance(v, speed);
-    double excess = range - v->command_orbit_radius;
+    double distance = speed / per_l1_time(v), excess = range - v->command_orbit_radius;
     m->guidance.cross_track = excess;
     double rn = range > 1e-6 ? north / range : 1.0, re = range > 1e-6 ? east / range : 0.0;
-    double ci = distance / sqrt(distance * distance + excess * excess), si = ci * excess / distance; /* inwards */
+    double per_slant = 1.0 / sqrt(distance * distance + excess * excess);
+    double ci = distance * per_slant, si = excess * per_slant; /* inwards */
     double wn = -si * rn - direction * ci * re, we = -si * re + direction * ci * rn;   /* course wanted */
     double cn = o->velocity_north / speed, ce = o->velocity_east / speed;              /* course flown */
     double sine = cn * we - ce * wn, cosine = cn * wn + ce * we;
     double around = range > 0.5 * v->command_orbit_radius ? range : 0.5 * v->command_orbit_radius;
     double centripetal = direction * speed * speed / around * ci * clamp(cosine, 0.0, 1.0);
-    return bank_for(m, l1_acceleration(m, speed, distance, sine, cosine) + centripetal);
+    return bank_for(m, l1_acceleration(m, speed, sine, cosine) + centripetal);
 }
 
 /* Climb [m/s] towards the commanded altitude; less of it when airspeed is being lost or gained. */

@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "angles.h"
 #include "variables.h"
 
 #if defined(__GNUC__)
@@ -257,7 +258,7 @@ static inline void rotate_back(const double R[9], const double n[3], double b[3]
 
 /* Density near the last sample: linear in altitude (a pow() in every derivative would cost a tenth of the step). */
 static inline double density_at(const Model *m, double altitude) {
-    if (m->continuous) return air_at(m->v.environment_home_elevation + altitude).density;
+    if (RARELY(m->continuous)) return air_at(m->v.environment_home_elevation + altitude).density;
     double density = m->air.density + m->air.slope * (altitude - m->air_altitude);
     return density > 0.0 ? density : 0.0;
 }

@@ -13,6 +13,7 @@ double throttle_for(const Variables *v, double thrust_wanted, double airspeed, d
     double disc = v->aircraft_propulsion_disc_area * v->aircraft_propulsion_coefficient;
     double room = v->aircraft_propulsion_motor_speed - airspeed;
     if (disc <= 0.0 || room <= 0.0) return 1.0;
-    double slipstream = 0.5 * (airspeed + sqrt(airspeed * airspeed + 8.0 * thrust_wanted / (density * disc)));
-    return clamp((slipstream - airspeed) / room, 0.0, 1.0);
+    double per_room = 1.0 / room, added = 8.0 / (density * disc); /* neither waits for the thrust */
+    double slipstream = 0.5 * (airspeed + sqrt(airspeed * airspeed + added * thrust_wanted));
+    return clamp((slipstream - airspeed) * per_room, 0.0, 1.0);
 }

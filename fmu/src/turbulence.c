@@ -51,7 +51,6 @@ static double transverse(double x[2], double ratio, double sigma, const double n
 void turbulence_sample(Model *m, const Motion *o, double period) {
     const Variables *v = &m->v;
     Turbulence *t = &m->turbulence;
-    if (v->turbulence_wind_speed <= 0.0) return;
     double height = clamp((o->altitude - v->ground_elevation) / FOOT, LOWEST, HIGHEST);
     double spread = 0.177 + 0.000823 * height;
     double length_w = height * FOOT, length_u = height / pow(spread, 1.2) * FOOT;
