@@ -21,7 +21,7 @@ import numpy as np
 
 from avoidance import Performance
 from avoidance.parameters import DEFAULT
-from avoidance.problem import Intruders, WaypointProblem, straight_cost
+from avoidance.problem import Intruders, WaypointProblem, search_box, straight_cost
 from avoidance.pso import Pso
 from avoidance.search import search_waypoint
 from avoidance.seeds import rule_seeds
@@ -123,18 +123,11 @@ def timed_cost(problem: WaypointProblem, goal: float) -> Callable[[Floats], Floa
     return rank
 
 
-def box(problem: WaypointProblem) -> tuple[Floats, Floats]:
-    """Corners of the search space that g2 allows."""
-    members = problem.centres[problem.avoided]
-    reach = problem.parameters.search_limit
-    return members.min(axis=0) - reach, members.max(axis=0) + reach
-
-
 def by_sidestep(problem: WaypointProblem, goal: float, seed: int) -> None:
     """Our search: seeds, then the swarm, as `avoidance.search.search_waypoint` drives them."""
     settings = problem.parameters.swarm
     seeds, _ = rule_seeds(problem, settings.particles)
-    swarm = Pso(seeds, settings, np.random.default_rng(seed))
+    swarm = Pso(seeds, search_box(problem), settings, np.random.default_rng(seed))
     rank = timed_cost(problem, goal)
     while not swarm.finished:
         swarm.tell(rank(swarm.ask()))
@@ -145,7 +138,7 @@ def by_evolution(problem: WaypointProblem, goal: float, seed: int) -> None:
     from scipy.optimize import differential_evolution  # noqa: PLC0415
 
     rank = timed_cost(problem, goal)
-    low, high = box(problem)
+    low, high = search_box(problem)
     differential_evolution(
         lambda x: rank(np.atleast_2d(x.T)),
         list(zip(low, high, strict=True)),
@@ -166,7 +159,7 @@ def by_pyswarms(problem: WaypointProblem, goal: float, seed: int) -> None:
 
     logging.disable(logging.CRITICAL)
     rank = timed_cost(problem, goal)
-    low, high = box(problem)
+    low, high = search_box(problem)
     state = np.random.get_state()  # noqa: NPY002 - pyswarms draws from the global generator
     np.random.seed(seed)  # noqa: NPY002
     try:

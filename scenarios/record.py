@@ -199,7 +199,7 @@ def decision_rows(flown: Flown) -> list[dict[str, Any]]:
 def decision_row(entry: LoggedDecision, vehicle: str = OWN) -> dict[str, Any]:
     """One line of `decisions.jsonl` as a dict; keys and units in docs/run-directory.md."""
     decision, state, search = entry.decision, entry.state, entry.decision.search
-    new = _new_waypoints(entry)
+    new = new_waypoints(entry)
     return {
         "t_s": round(state.time, 3),
         "vehicle": vehicle,
@@ -225,7 +225,8 @@ def decision_row(entry: LoggedDecision, vehicle: str = OWN) -> dict[str, Any]:
     }
 
 
-def _new_waypoints(entry: LoggedDecision) -> tuple[Waypoint, ...]:
+def new_waypoints(entry: LoggedDecision) -> tuple[Waypoint, ...]:
+    """The waypoints that a decision put in; of a hold its centre."""
     match entry.decision:
         case Detour(waypoint=waypoint) | Hold(centre=waypoint):
             return (waypoint,)

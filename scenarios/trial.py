@@ -107,13 +107,15 @@ def attempt(case: Case, fidelity: Fidelity, parameters: Parameters) -> Outcome:
     PlantError
         If the aircraft model does not load.
     """
-    library = _library()
+    library = aircraft_model()
     scenario = scenario_of(case, fidelity, parameters)
     try:
-        flown = _fly(scenario, parameters, library, avoidance=True)
+        flown = fly_through(scenario, parameters, library, avoidance=True)
         judged = score(flown)
         if KINDS[case.kind].traffic:
-            return _encounter(case, flown, judged, _fly(scenario, parameters, library, avoidance=False))
+            return _encounter(
+                case, flown, judged, fly_through(scenario, parameters, library, avoidance=False)
+            )
         return _field(case, flown, judged)
     except Exception as error:
         return Outcome(case, error=f"{type(error).__name__}: {error}")
@@ -191,7 +193,8 @@ def _straight_hits(scenario: Scenario) -> bool:
     return any(s.entries for s in separations(straight, scenario.obstacles))
 
 
-def _fly(scenario: Scenario, parameters: Parameters, library: FmuLibrary, *, avoidance: bool) -> Flown:
+def fly_through(scenario: Scenario, parameters: Parameters, library: FmuLibrary, *, avoidance: bool) -> Flown:
+    """Fly a scenario from beginning to end."""
     with Hangar(scenario, parameters, library) as hangar:
         flight = Flight(scenario, hangar, seed=scenario.seed, parameters=parameters, avoidance=avoidance)
         for _ in flight:
@@ -200,7 +203,7 @@ def _fly(scenario: Scenario, parameters: Parameters, library: FmuLibrary, *, avo
 
 
 @cache
-def _library() -> FmuLibrary:
+def aircraft_model() -> FmuLibrary:
     """The aircraft model, loaded once in a process and freed at its end."""
     from fmu.library import FmuLibrary  # noqa: PLC0415
 
