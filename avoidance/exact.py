@@ -31,7 +31,6 @@ def exact_way(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None
         centres=problem.centres,
         radii=problem.keep,
         planner=NAME,
-        found=route[0] if len(route) == 1 else None,
         evaluations=1,
         problem=problem,
     )

@@ -14,13 +14,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scenarios import __version__, fmu_commands
+from scenarios import __version__, compare_commands, fmu_commands
+from scenarios.command_errors import INTERRUPTED, OK, UNSAFE, expected_errors
 
 if TYPE_CHECKING:
     from avoidance.parameters import Parameters
     from scenarios.scenario import Scenario
-
-OK, UNSAFE, BAD_INPUT, FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 
 app = typer.Typer(
     name="sidestep",
@@ -31,6 +30,7 @@ app = typer.Typer(
     add_completion=False,
 )
 app.add_typer(fmu_commands.app)
+app.command()(compare_commands.compare)
 
 
 def main() -> None:
@@ -59,7 +59,7 @@ def list_scenarios() -> None:
     from scenarios.load import catalogue_names, load  # noqa: PLC0415
     from scenarios.show import scenario_table  # noqa: PLC0415
 
-    with _errors():
+    with expected_errors():
         scenario_table([load(name) for name in catalogue_names()])
 
 
@@ -114,7 +114,7 @@ def fly(
     from scenarios.scenario import FIDELITIES, Wind  # noqa: PLC0415
     from scenarios.target import check_target, free_directory  # noqa: PLC0415
 
-    with _errors():
+    with expected_errors():
         if preset is not None:
             run.preset(preset)
         chosen = load(scenario)
@@ -144,7 +144,7 @@ def report(directory: Annotated[Path, typer.Argument(metavar="DIR", help="A run 
     """Write report.html of a run again, from its files alone."""
     from scenarios.report import write_report  # noqa: PLC0415
 
-    with _errors():
+    with expected_errors():
         typer.echo(str(write_report(directory)))
 
 
@@ -161,7 +161,7 @@ def replay(
     from scenarios.replay import timeline  # noqa: PLC0415
     from scenarios.show import play, verdict_of_replay  # noqa: PLC0415
 
-    with _errors():
+    with expected_errors():
         runs = read_fleet(directory)
         for run in runs:
             play(timeline(run), speed)
@@ -205,7 +205,7 @@ def stress(
     from scenarios.stress_options import campaign_of  # noqa: PLC0415
     from scenarios.stress_show import failures, progress, table  # noqa: PLC0415
 
-    with _errors():
+    with expected_errors():
         campaign = campaign_of(kind, obstacles, runs, seed, vehicle, preset, planner, jobs, dask)
         outcomes, files = [], []
         for outcome in progress(run(campaign, jobs=jobs, dask=dask), campaign):
@@ -267,26 +267,6 @@ def _two_numbers(text: str) -> tuple[float, float]:
     if not (math.isfinite(north) and math.isfinite(east)):
         raise ScenarioError("--wind", f"{text!r} must be two finite numbers")
     return north, east
-
-
-@contextlib.contextmanager
-def _errors() -> Iterator[None]:
-    """Expected errors become one message on stderr and an exit code."""
-    from fmu.errors import FmuError  # noqa: PLC0415
-    from offboard.errors import OffboardError  # noqa: PLC0415
-    from scenarios.errors import RunDirectoryError, ScenarioError  # noqa: PLC0415
-
-    try:
-        yield
-    except (ScenarioError, RunDirectoryError) as error:
-        typer.echo(f"sidestep: {error}", err=True)
-        raise typer.Exit(BAD_INPUT) from error
-    except (FmuError, OffboardError) as error:
-        typer.echo(f"sidestep: {error}", err=True)
-        raise typer.Exit(FAILED) from error
-    except KeyboardInterrupt as error:
-        typer.echo("sidestep: interrupted, nothing was written", err=True)
-        raise typer.Exit(INTERRUPTED) from error
 
 
 @contextlib.contextmanager

@@ -34,7 +34,8 @@ def compare(
     fidelity: Annotated[str | None, typer.Option(help="6dof or kinematic; else the scenario's.")] = None,
     jobs: Annotated[int | None, typer.Option(min=1, help="Processes; as many as cores if not given.")] = None,
     output: Annotated[
-        Path | None, typer.Option("-o", "--output", metavar="FILE", help="Also write an HTML page with a map.")
+        Path | None,
+        typer.Option("-o", "--output", metavar="FILE", help="Also write a page with a map."),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print the rows as JSON and nothing else.")] = False,
     names: Annotated[bool, typer.Option("--list", help="List the planners and exit.")] = False,

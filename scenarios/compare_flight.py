@@ -101,7 +101,9 @@ def thinned(positions: Floats) -> list[list[float]]:
 
 
 def _searches(decisions: Iterable[LoggedDecision]) -> list[Search]:
-    return [s for entry in decisions if (s := entry.decision.search) is not None and s.iterations > 0]
+    """Searches for single waypoints; the exact planner and OMPL look for routes."""
+    every = (entry.decision.search for entry in decisions)
+    return [s for s in every if s is not None and (s.found is not None or s.iterations > 0)]
 
 
 def _search(search: Search, gaps: bool) -> Record:

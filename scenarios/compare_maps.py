@@ -60,10 +60,11 @@ def course_map(
     many = len(records) > 1
     for number, (label, record) in enumerate(records.items()):
         traces += _traffic(record, show=number == 0)
-        look = {"color": COLOURS[number % len(COLOURS)], "dash": DASHES[number % len(DASHES)], "width": 2.2}
+        colour = COLOURS[number % len(COLOURS)]
+        look = {"color": colour, "dash": DASHES[number % len(DASHES)], "width": 2.2}
         traces.append(_line(label, record["track"], "flown") | {"line": look})
         if waypoints:
-            traces += _put_in(record, look["color"] if many else WAYPOINT, legend=not many)
+            traces += _put_in(record, colour if many else WAYPOINT, legend=not many)
     layout = layout_of("x, north of home [km]", "y, east of home [km]", height=height)
     if window is not None:
         x0, x1, y0, y1 = (value / 1e3 for value in window)

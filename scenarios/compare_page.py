@@ -54,9 +54,7 @@ def table_html(heads: Sequence[tuple[str, str]], lines: Sequence[Sequence[str]])
     top = "".join(
         f"<th>{escape(name)}{f'<small>{escape(note)}</small>' if note else ''}</th>" for name, note in heads
     )
-    body = "".join(
-        f"<tr>{''.join(f'<td>{escape(text)}</td>' for text in line)}</tr>" for line in lines
-    )
+    body = "".join(f"<tr>{''.join(f'<td>{escape(text)}</td>' for text in line)}</tr>" for line in lines)
     return f'<div class="scroll"><table><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table></div>'
 
 
@@ -64,7 +62,7 @@ def plot_html(name: str, caption: str) -> str:
     """A place for a figure."""
     label = escape(caption, quote=True)
     return (
-        f'<figure><figcaption>{escape(caption)}</figcaption>'
+        f"<figure><figcaption>{escape(caption)}</figcaption>"
         f'<div class="plot" id="{name}" role="img" aria-label="{label}"></div></figure>'
     )
 

@@ -160,4 +160,3 @@ def _progress(
         for pair in records:
             bar.update(task, advance=1)
             yield pair
-
