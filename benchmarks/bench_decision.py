@@ -1,7 +1,7 @@
 """Time of one decision with a threat, by obstacles known: medians as a Markdown table.
 
 Run from the repository's root: `python benchmarks/bench_decision.py`. One obstacle blocks the leg, the
-others stand about it as the seeds place them.
+others stand about it as the seeds place them; last, a hill of 140 spheres that overlap.
 """
 
 from __future__ import annotations
@@ -19,15 +19,27 @@ PERFORMANCE = Performance(
 )
 
 
-def decision_ms(seed: int, obstacles: int) -> float:
-    """Time of the decision about one random world [ms]."""
-    rng = np.random.default_rng(seed)
+def heap(rng: np.random.Generator, obstacles: int) -> list[Contact]:
+    """A hill of overlapping spheres across the leg."""
+    places = rng.normal((7000.0, 0.0), (800.0, 1200.0), (obstacles, 2))
+    return [Contact(number, float(north), float(east), 200.0) for number, (north, east) in enumerate(places)]
+
+
+def field(rng: np.random.Generator, obstacles: int) -> list[Contact]:
+    """One obstacle on the leg, the others beside it."""
     blocking = Contact(0, 8000.0, float(rng.uniform(-600.0, 600.0)), 200.0)
     contacts = [blocking]
     while len(contacts) < obstacles:
         north, east = rng.uniform(2500.0, 10_000.0), rng.uniform(-7000.0, 7000.0)
         if abs(east) > 1200.0:
             contacts.append(Contact(len(contacts), float(north), float(east), 200.0))
+    return contacts
+
+
+def decision_ms(seed: int, obstacles: int, *, overlapping: bool = False) -> float:
+    """Time of the decision about one random world [ms]."""
+    rng = np.random.default_rng(seed)
+    contacts = (heap if overlapping else field)(rng, obstacles)
     agent = Agent(PERFORMANCE, rng=rng)
     route = Route(Waypoint(0.0, 0.0, 200.0), (Waypoint(40_000.0, 0.0, 200.0, item=0),))
     spent = 0.0
@@ -50,6 +62,8 @@ def main() -> None:
     for count in (1, 5, 20, 50, 100):
         times = [decision_ms(seed, count) for seed in range(WORLDS)]
         print(f"| {count} | {np.median(times):.1f} | {np.percentile(times, 99):.1f} |")
+    times = [decision_ms(seed, 140, overlapping=True) for seed in range(WORLDS)]
+    print(f"| 140 overlapping | {np.median(times):.1f} | {np.percentile(times, 99):.1f} |")
 
 
 if __name__ == "__main__":
