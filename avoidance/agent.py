@@ -7,12 +7,13 @@ import math
 import numpy as np
 
 from avoidance.conflicts import first_conflict
-from avoidance.detours import fly_round, search_problem
+from avoidance.contingency import first_trap, orbit_from_here
 from avoidance.escape import Escape
-from avoidance.holding import holding_orbit, holding_words, skipped
+from avoidance.holding import hold_on, holding_words, skipped
 from avoidance.known import Known, keep_what_can_be_kept, known_obstacles
-from avoidance.ladder import Way, way_round, widest_way
+from avoidance.ladder import Way, way_round
 from avoidance.parameters import DEFAULT, Parameters
+from avoidance.passages import Gap, way_with_orbits
 from avoidance.replacement import Replacements
 from avoidance.route_check import Blocked, first_blocked_leg
 from avoidance.tracking import Tracker
@@ -31,10 +32,16 @@ from avoidance.types import (
 from avoidance.words import obstacles, threat_words
 
 CLEAR = Keep(why="the route is clear")
-PATIENCE = 8
+PATIENCE = 20
 """A mission item that no route leads to is skipped after so many attempts from a holding orbit."""
-RETRY = 5.0
+RETRY = 3.0
 """While holding, or while a later leg is blocked, a way is looked for again after this time [s]."""
+
+
+LATER = 2000.0
+"""A later leg that is blocked further ahead than this does not stop the vehicle yet [m]."""
+LAST_MOMENT = 4.0
+"""Nearer to what blocks the way than this many turn radii the vehicle turns, whatever the orbit's room."""
 
 
 class Agent:
@@ -126,39 +133,57 @@ class Agent:
         known = keep_what_can_be_kept(known, own, self._performance)
         blocked = first_blocked_leg(own, route, known, self._performance)
         if blocked is None:
+            blocked = first_trap(own, route, known, self._performance, self._parameters)
+        if blocked is None:
             blocked = first_conflict(own, route, known, self._performance)
         if blocked is not None:
             return self._avoid(own, route, known, blocked)
         return self._resume(own, route, known)
 
     def _avoid(self, own: Ownship, route: Route, known: Known, blocked: Blocked) -> Decision:
-        problem, begin, end = search_problem(own, route, known, blocked, self._performance, self._parameters)
-        plan = self._way(problem, self._rng)
-        if plan is None and len(known.intruders):
-            plan = widest_way(problem, self._rng)
-        if plan is not None:
+        gap = Gap.of(own, route, known, blocked, self._performance, self._parameters)
+        way = way_with_orbits(gap, self._way, self._rng)
+        if way is not None:
             self._avoiding = frozenset(blocked.threat.ids)
             self._holding = False
             self._failures = 0
-            return fly_round(route, blocked, plan, begin, end)
-        if route.waypoints[end].item is not None and not blocked.threat.moving:
-            height = route.waypoints[end].altitude
-            walled_in = self._replacements.move(own, route, known.circles(height, height), end, ())
+            return way
+        if gap.target.item is not None and not blocked.threat.moving:
+            walled_in = self._move(gap)
             if walled_in is not None:
                 return walled_in
         self._retry_at = own.time + RETRY
-        if begin > 0 or blocked.threat.moving:
+        if blocked.threat.moving or (gap.begin > 0 and blocked.threat.distance > LATER):
             words = f"{threat_words(blocked.threat)}; no way round is known yet"
             return Keep(why=words, threat=blocked.threat, rung=Rung.ORBIT)
-        self._failures += 1
-        if self._failures > PATIENCE and route.waypoints[end].item is not None:
-            self._failures = 0
-            self._holding = False
-            return skipped(route, blocked, end)
+        return self._wait(gap)
+
+    def _move(self, gap: Gap) -> Decision | None:
+        """Another stand-in for the waypoint that no way leads to."""
+        circles = gap.known.circles(gap.target.altitude, gap.target.altitude)
+        return self._replacements.move(gap.own, gap.route, circles, gap.end, ())
+
+    def _wait(self, gap: Gap) -> Decision:
+        """Hold in free space, or fly on until there is room to; after a while give the waypoint up."""
+        threat = gap.blocked.threat
         if self._holding:
-            return Keep(why=holding_words(blocked), threat=blocked.threat, rung=Rung.ORBIT)
+            self._failures += 1
+            if self._failures > PATIENCE and gap.target.item is not None:
+                self._failures = 0
+                moved = self._move(gap) if self._replacements.ask_for_wide_ways(gap.target) else None
+                if moved is not None:
+                    return moved
+                self._holding = False
+                return skipped(gap.route, gap.blocked, gap.end)
+            return Keep(why=holding_words(gap.blocked), threat=threat, rung=Rung.ORBIT)
+        circles = gap.known.circles(gap.own.altitude, gap.own.altitude)
+        orbit = orbit_from_here(gap.own, circles, self._performance)
+        if orbit.clearance < 0.0 and threat.distance > LAST_MOMENT * self._performance.turn_radius:
+            self._retry_at = gap.own.time
+            words = f"{threat_words(threat)}; hold as soon as there is room to"
+            return Keep(why=words, threat=threat, rung=Rung.ORBIT)
         self._holding = True
-        return holding_orbit(own, known, blocked, self._performance)
+        return hold_on(gap.own, orbit, gap.blocked)
 
     def _resume(self, own: Ownship, route: Route, known: Known) -> Decision:
         """End a hold, or undo a detour whose reason has gone: the intruder passed, a false track died."""

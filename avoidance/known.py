@@ -33,6 +33,8 @@ class Circles:
     """North and east [m], shape (c, 2)."""
     keep: Floats
     """Distance that the flown curve keeps: radius of the cut + margin [m], shape (c,)."""
+    hard: Floats
+    """Distance that nothing ever goes below: radius of the cut + doubt about its place [m], shape (c,)."""
     keep_waypoint: Floats
     """Distance that a new waypoint keeps: the same + tolerance [m], shape (c,)."""
     slack: Floats
@@ -55,6 +57,8 @@ class Known:
     """What is kept beyond the sphere [m], shape (d,)."""
     tolerance: Floats
     """What a new waypoint keeps beyond the sphere [m], shape (d,)."""
+    doubt: Floats
+    """How far the sphere may lie from where it was measured [m], shape (d,)."""
     slack: Floats
     """A route is left alone until it comes nearer than is to be kept by this [m], shape (d,)."""
     most: Floats
@@ -81,6 +85,7 @@ class Known:
             rows=rows,
             centres=self.centres[rows],
             keep=np.minimum(keep, self.most[rows]),
+            hard=cut + self.doubt[rows],
             keep_waypoint=np.maximum(cut + self.tolerance[rows], keep),
             slack=self.slack[rows],
         )
@@ -127,6 +132,7 @@ def known_obstacles(
         radii=radii[still],
         margin=margin[still],
         tolerance=tolerance[still],
+        doubt=doubt[still],
         slack=parameters.hysteresis + doubt[still],
         most=np.full(int(still.sum()), np.inf),
         **_traffic(picture, moving, radii, own, route, parameters),

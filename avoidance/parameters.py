@@ -61,6 +61,9 @@ class Parameters:
     """MXRSK of Eqs. 4-5."""
     risk_squared_metres: bool = False
     """f2 in square metres as printed; else dimensionless, the sum of squared relative intrusions."""
+    pop_up_room: float | None = 1000.0
+    """Whatever is new is first seen with its sphere no nearer than this [m]: an orbit in free space is always
+    kept within it. None does without one."""
     memory: bool = True
     """Obstacles once seen stay known; else only those of the current scan are."""
     range_sigma: float = 0.0
@@ -110,6 +113,7 @@ PAPER = Parameters(
     reaction_distance=8000.0,
     predict=False,
     worth_relaxing=math.inf,
+    pop_up_room=None,
     swarm=SwarmSettings(
         particles=10,
         iterations=30,

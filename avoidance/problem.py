@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from avoidance.constraints import (
 )
 from avoidance.cost import path_length, risk
 from avoidance.flown import SEQUENCING_DELAY, flown_segments
+from avoidance.geometry import distances
 from avoidance.parameters import Parameters
 from avoidance.prediction import Intruders, ground_speeds, separation_shortfall
 from avoidance.right_of_way import gives_way, wrong_side
@@ -106,6 +107,13 @@ class WaypointProblem:
         """One number per candidate of shape (n, 2) by which every planner orders them, smaller is better."""
         violation = self.violation(points)
         return np.where(violation > 0.0, INFEASIBLE + violation, self.cost(points))
+
+    def widened(self, room: float) -> WaypointProblem:
+        """The same search, keeping `room` [m] more from everything that is not nearer to its ends already."""
+        ends = np.array([self.start, self.target])
+        most = distances(ends, self.centres).min(axis=0) - 1.0
+        keep = np.maximum(np.minimum(self.keep + room, most), self.keep)
+        return replace(self, keep=keep, keep_waypoint=np.maximum(self.keep_waypoint, keep))
 
     def _safe_waypoint(self, points: Floats) -> Floats:
         required = self.keep if "g1" in self.relaxed else self.keep_waypoint

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from avoidance.contingency import turning_room
 from avoidance.free_space import nearest_free
 from avoidance.geometry import point_distances
 from avoidance.known import Circles, Known
@@ -31,6 +32,7 @@ class Replacements:
         self._parameters = parameters
         self._mission: dict[int, Waypoint] = {}
         self._reconsidered = 0
+        self._wide: set[int | None] = set()
 
     def learn(self, route: Route) -> None:
         """Remember where the mission's own waypoints are, as uploaded last."""
@@ -82,11 +84,13 @@ class Replacements:
         waypoint = route.waypoints[index]
         original = self._mission.get(-1 if waypoint.item is None else waypoint.item, waypoint)
         here = (own.north, own.east)
-        passing = np.maximum(np.minimum(circles.keep, point_distances(circles.centres, here) - 1.0), 0.0)
+        wide = circles.keep + (turning_room(self._performance) if waypoint.item in self._wide else 0.0)
+        passing = np.maximum(np.minimum(wide, point_distances(circles.centres, here) - 1.0), 0.0)
         place = (original.north, original.east)
         point = None
         for room in self._rooms():
-            point = nearest_free(place, here, circles.centres, circles.keep + room, passing)
+            safe = circles.keep + room
+            point = nearest_free(place, here, circles.centres, safe, np.minimum(passing, safe))
             if point is not None:
                 break
         if point is None or math.dist(point, (waypoint.north, waypoint.east)) < 1.0:
@@ -102,6 +106,16 @@ class Replacements:
             waypoint=chosen,
             rung=Rung.WAYPOINT,
         )
+
+    def ask_for_wide_ways(self, waypoint: Waypoint) -> bool:
+        """From now on its stand-in must be reached through passages in which the vehicle can turn round.
+
+        True if that is news.
+        """
+        if self._parameters.pop_up_room is None or waypoint.item in self._wide:
+            return False
+        self._wide.add(waypoint.item)
+        return True
 
     def _waypoint_room(self) -> float:
         """Room beyond `keep` that a mission waypoint needs, so that it can be left again."""

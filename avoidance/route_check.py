@@ -84,7 +84,7 @@ def first_blocked_leg(
     starts, ends, extra = flown_segments(points, own.course, performance)
     legs = _leg_of_segment(points.shape[1], inserted)
     first: Blocked | None = None
-    for band, owners in _altitude_bands(own, route).items():
+    for band, owners in altitude_bands(own, route).items():
         circles = known.circles(*band)
         mine = np.flatnonzero(np.isin(legs, owners))
         distance = segments_clearance(starts[0, mine], ends[0, mine], circles.centres)
@@ -118,7 +118,7 @@ def first_blocked_leg(
     return first
 
 
-def _altitude_bands(own: Ownship, route: Route) -> dict[tuple[float, float], list[int]]:
+def altitude_bands(own: Ownship, route: Route) -> dict[tuple[float, float], list[int]]:
     """Legs by the altitudes between which they are flown, lowest and highest [m]."""
     bands: dict[tuple[float, float], list[int]] = {}
     before = own.altitude

@@ -179,6 +179,8 @@ class Threat:
     """Distance that must be kept from it [m]."""
     moving: bool = False
     """True for an intruder, false for something that stands still."""
+    narrow: bool = False
+    """True for a passage that is clear but too narrow to turn round in for too long."""
 
 
 class Rung(Enum):

@@ -34,6 +34,11 @@ def threat_words(threat: Threat) -> str:
             f"{who} (moving) would pass at {threat.clearance:.0f} m in {threat.time:.0f} s, "
             f"{threat.required:.0f} m is to be kept"
         )
+    if threat.narrow:
+        return (
+            f"the passage at {who} {threat.distance / 1000:.1f} km ahead is too narrow to turn round in: "
+            f"{threat.required:.0f} m are needed"
+        )
     verb = "cuts" if len(threat.ids) == 1 else "cut"
     return (
         f"{who} {verb} the route {threat.distance / 1000:.1f} km ahead: "

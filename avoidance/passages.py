@@ -1,0 +1,144 @@
+"""Ways round that lead into no passage too narrow to turn round in."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from avoidance.contingency import first_trap, turning_room
+from avoidance.detours import fly_round, search_problem
+from avoidance.known import Known
+from avoidance.ladder import Plan, Way, widest_way
+from avoidance.parameters import Parameters
+from avoidance.problem import WaypointProblem
+from avoidance.route_check import Blocked
+from avoidance.types import Bools, Decision, Floats, Ownship, Performance, Route, Waypoint
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Gap:
+    """A part of a route that cannot be flown, and all that is needed to find a way round it."""
+
+    own: Ownship
+    """The vehicle."""
+    route: Route
+    """What it is to fly."""
+    known: Known
+    """What stands still and what moves."""
+    blocked: Blocked
+    """What is wrong with the route."""
+    performance: Performance
+    """What the vehicle can fly."""
+    parameters: Parameters
+    """Preset."""
+    problem: WaypointProblem
+    """The search for a way round."""
+    begin: int
+    """First waypoint of the route that the way replaces, if any."""
+    end: int
+    """Waypoint to which the way must lead."""
+
+    @classmethod
+    def of(
+        cls,
+        own: Ownship,
+        route: Route,
+        known: Known,
+        blocked: Blocked,
+        performance: Performance,
+        parameters: Parameters,
+    ) -> Gap:
+        """Where a blocked route must be left, and where it can be taken up again."""
+        problem, begin, end = search_problem(own, route, known, blocked, performance, parameters)
+        return cls(own, route, known, blocked, performance, parameters, problem, begin, end)
+
+    @property
+    def target(self) -> Waypoint:
+        """The waypoint to which a way round must lead."""
+        return self.route.waypoints[self.end]
+
+    def way(self, plan: Plan) -> Decision:
+        """The decision to fly a plan."""
+        return fly_round(self.route, self.blocked, plan, self.begin, self.end)
+
+    def trap(self, plan: Plan) -> Blocked | None:
+        """The first stretch of a plan along which no orbit in free space can be begun for too long."""
+        here = Waypoint(self.own.north, self.own.east, self.own.altitude)
+        ahead = Route(here, self.way(plan).route or self.route.waypoints)
+        trap = first_trap(self.own, ahead, self.known, self.performance, self.parameters)
+        return None if trap is None or trap.leg > self.begin + len(plan.waypoints) else trap
+
+
+def way_with_orbits(gap: Gap, planner: Way, rng: np.random.Generator) -> Decision | None:
+    """The way round along which an orbit in free space can always be begun, or None.
+
+    Parameters
+    ----------
+    gap : Gap
+        What to fly round.
+    planner : Way
+        Who finds a way round what is known.
+    rng : numpy.random.Generator
+        The planner's randomness.
+
+    Notes
+    -----
+    The shortest way comes first. If it leads into a narrow passage, so much is kept from what lies on one
+    side of it that an orbit fits in there, then on the other side, then on both.
+    """
+    problem = gap.problem
+    passage = np.array([problem.start, problem.target])
+    if not gap.blocked.threat.narrow:
+        plan = _plan(problem, planner, rng)
+        if plan is None:
+            return None
+        trap = None if gap.blocked.threat.moving else gap.trap(plan)
+        if trap is None:
+            return gap.way(plan)
+        corners = np.array([problem.start, *plan.waypoints, problem.target])
+        passage = corners[: max(trap.leg - gap.begin, 0) + 2]
+    for room in _rooms(gap, passage):
+        plan = _plan(problem.widened(room), planner, rng)
+        if plan is not None and gap.trap(plan) is None:
+            return gap.way(plan)
+    return None
+
+
+def _rooms(gap: Gap, passage: Floats) -> Iterator[Floats]:
+    """What to keep more from each obstacle, so that an orbit fits into a passage, least first [m]."""
+    wide = max(turning_room(gap.performance) - gap.parameters.margin, 0.0)
+    left = _left_of(passage, gap.problem.centres)
+    padded = max(wide - 0.5 * gap.performance.turn_radius, 0.0)  # the exact planner widens by as much again
+    for room in (wide, padded):
+        yield np.where(left, room, 0.0)
+        yield np.where(left, 0.0, room)
+    yield np.full(len(left), wide)
+    yield np.full(len(left), 2.0 * wide)
+
+
+def _plan(problem: WaypointProblem, planner: Way, rng: np.random.Generator) -> Plan | None:
+    plan = planner(problem, rng)
+    if plan is None and len(problem.intruders):
+        plan = widest_way(problem, rng)
+    return plan
+
+
+def _left_of(line: Floats, points: Floats) -> Bools:
+    """Which points, shape (n, 2), lie to the left of the piece of a line that is nearest to them."""
+    nearest = np.full(len(points), np.inf)
+    left = np.zeros(len(points), dtype=np.bool_)
+    for begin, end in pairwise(line):
+        step = end - begin
+        share = np.clip((points - begin) @ step / max(float(step @ step), 1e-9), 0.0, 1.0)
+        distance = np.hypot(*(points - begin - share[:, None] * step).T)
+        across = step[0] * (points[:, 1] - begin[1]) - step[1] * (points[:, 0] - begin[0])
+        closer = distance < nearest
+        left[closer] = across[closer] < 0.0
+        nearest = np.minimum(nearest, distance)
+    return left
+
+
+__all__ = ["Gap", "way_with_orbits"]
