@@ -200,6 +200,7 @@ class Agent:
         ahead = next(i for i, w in enumerate(route.waypoints) if w.item is not None)
         straight = Route(Waypoint(own.north, own.east, own.altitude), route.waypoints[ahead:])
         blocked = first_blocked_leg(own, straight, known, self._performance, slack=0.0)
+        blocked = blocked or first_trap(own, straight, known, self._performance, self._parameters)
         if ahead == 0 or blocked or first_conflict(own, straight, known, self._performance, resuming=True):
             return CLEAR
         who = obstacles(tuple(sorted(self._avoiding)))

@@ -87,24 +87,26 @@ def way_with_orbits(gap: Gap, planner: Way, rng: np.random.Generator) -> Decisio
     Notes
     -----
     The shortest way comes first. If it leads into a narrow passage, so much is kept from what lies on one
-    side of it that an orbit fits in there, then on the other side, then on both.
+    side of it that an orbit fits in there, then on the other side, then on both. An intruder is evaded even
+    into a narrow passage.
     """
-    problem = gap.problem
+    problem, moving = gap.problem, gap.blocked.threat.moving
     passage = np.array([problem.start, problem.target])
+    shortest: Plan | None = None
     if not gap.blocked.threat.narrow:
-        plan = _plan(problem, planner, rng)
-        if plan is None:
+        shortest = _plan(problem, planner, rng)
+        if shortest is None:
             return None
-        trap = None if gap.blocked.threat.moving else gap.trap(plan)
+        trap = gap.trap(shortest)
         if trap is None:
-            return gap.way(plan)
-        corners = np.array([problem.start, *plan.waypoints, problem.target])
+            return gap.way(shortest)
+        corners = np.array([problem.start, *shortest.waypoints, problem.target])
         passage = corners[: max(trap.leg - gap.begin, 0) + 2]
     for room in _rooms(gap, passage):
         plan = _plan(problem.widened(room), planner, rng)
         if plan is not None and gap.trap(plan) is None:
             return gap.way(plan)
-    return None
+    return gap.way(shortest) if shortest is not None and moving else None
 
 
 def _rooms(gap: Gap, passage: Floats) -> Iterator[Floats]:

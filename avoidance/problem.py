@@ -108,8 +108,8 @@ class WaypointProblem:
         violation = self.violation(points)
         return np.where(violation > 0.0, INFEASIBLE + violation, self.cost(points))
 
-    def widened(self, room: float) -> WaypointProblem:
-        """The same search, keeping `room` [m] more from everything that is not nearer to its ends already."""
+    def widened(self, room: Floats) -> WaypointProblem:
+        """The same search, keeping `room`, shape (d,), more from each obstacle not nearer to its ends [m]."""
         ends = np.array([self.start, self.target])
         most = distances(ends, self.centres).min(axis=0) - 1.0
         keep = np.maximum(np.minimum(self.keep + room, most), self.keep)

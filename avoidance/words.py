@@ -37,7 +37,7 @@ def threat_words(threat: Threat) -> str:
     if threat.narrow:
         return (
             f"the passage at {who} {threat.distance / 1000:.1f} km ahead is too narrow to turn round in: "
-            f"{threat.required:.0f} m are needed"
+            f"{threat.required:.0f} m are needed on one side"
         )
     verb = "cuts" if len(threat.ids) == 1 else "cut"
     return (

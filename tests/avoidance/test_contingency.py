@@ -1,0 +1,86 @@
+"""The orbit that is always kept, and the passages that are not entered for the want of one."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from avoidance import Ownship, Route
+from avoidance.contingency import first_trap, longest_stretch, orbit_from_here, orbit_reach, turning_room
+from avoidance.known import Known
+from avoidance.parameters import DEFAULT, PAPER
+from tests.avoidance.test_route_check import known
+from tests.avoidance.worlds import PERFORMANCE, ownship, route
+
+
+def corridor(half_width: float, length: float = 6000.0, begin: float = 3000.0) -> list[tuple[float, float]]:
+    """Two walls of spheres; nothing within `half_width` of the line between them."""
+    places = np.arange(begin, begin + length + 1.0, 100.0)
+    return [(float(north), side * (half_width + 1000.0)) for north in places for side in (-1.0, 1.0)]
+
+
+def seen(obstacles: list[tuple[float, float]], own: Ownship, way: Route) -> Known:
+    return known(obstacles, own, way)
+
+
+def test_in_the_open_the_orbit_is_wide_and_touches_the_course_one_roll_time_ahead() -> None:
+    own = ownship()
+    orbit = orbit_from_here(
+        own, seen([(9000.0, 0.0)], own, route((40_000.0, 0.0))).circles(200, 200), PERFORMANCE
+    )
+    assert orbit.clearance > 0.0
+    assert orbit.radius == pytest.approx(1.5 * PERFORMANCE.turn_radius)
+    assert orbit.centre[0] == pytest.approx(PERFORMANCE.airspeed * PERFORMANCE.roll_time)
+    assert abs(orbit.centre[1]) == pytest.approx(orbit.radius)
+
+
+@pytest.mark.parametrize(("side", "direction"), [(-1.0, 1), (1.0, -1)])
+def test_the_orbit_is_begun_away_from_what_is_near(side: float, direction: int) -> None:
+    own = ownship()
+    near = seen([(0.0, side * 1060.0)], own, route((40_000.0, 0.0))).circles(200, 200)
+    orbit = orbit_from_here(own, near, PERFORMANCE)
+    assert orbit.clearance >= 0.0
+    assert orbit.direction == direction
+
+
+@pytest.mark.parametrize(("more", "free"), [(2.0, True), (-2.0, False)])
+def test_between_two_spheres_an_orbit_needs_its_reach_to_both_sides(more: float, free: bool) -> None:
+    half = orbit_reach(PERFORMANCE)
+    aside = 1.2 * PERFORMANCE.turn_radius
+    lead = PERFORMANCE.airspeed * PERFORMANCE.roll_time
+    own = ownship(north=-lead, east=-aside)
+    walls = seen([(0.0, -half - 1000.0 - more), (0.0, half + 1000.0 + more)], own, route((40_000.0, 0.0)))
+    assert (orbit_from_here(own, walls.circles(200, 200), PERFORMANCE).clearance >= 0.0) == free
+
+
+@pytest.mark.parametrize(
+    ("half_width", "length", "trap"), [(60, 6000, True), (60, 0, False), (150, 6000, False)]
+)
+def test_only_a_long_and_narrow_passage_is_a_trap(half_width: float, length: float, trap: bool) -> None:
+    own, way = ownship(), route((40_000.0, 0.0))
+    found = first_trap(own, way, seen(corridor(half_width, length), own, way), PERFORMANCE, DEFAULT)
+    assert (found is not None) == trap
+
+
+def test_a_trap_tells_where_it_begins_and_between_what() -> None:
+    own, way = ownship(), route((1000.0, 0.0), (40_000.0, 0.0))
+    found = first_trap(own, way, seen(corridor(80.0), own, way), PERFORMANCE, DEFAULT)
+    assert found is not None
+    assert found.leg == 1
+    assert found.threat.narrow
+    assert found.threat.distance == pytest.approx(3000.0, abs=300.0)
+    assert found.threat.required == pytest.approx(turning_room(PERFORMANCE))
+    assert len(found.threat.ids) == 2
+
+
+def test_no_trap_without_the_promise() -> None:
+    own, way = ownship(), route((40_000.0, 0.0))
+    assert first_trap(own, way, seen(corridor(60.0), own, way), PERFORMANCE, PAPER) is None
+
+
+def test_wind_needs_wider_turns_and_shorter_stretches() -> None:
+    windy = replace(PERFORMANCE, wind_bound=8.0)
+    assert turning_room(windy) > 1.5 * turning_room(PERFORMANCE)
+    assert longest_stretch(windy, 1000.0) < longest_stretch(PERFORMANCE, 1000.0)
