@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import TracebackType
 from typing import Literal
 
@@ -16,7 +16,7 @@ Fidelity = Literal["6dof", "kinematic"]
 Law = Literal["l1", "paper"]
 FIDELITIES: dict[str, int] = {"6dof": 0, "kinematic": 1}
 LAWS: dict[str, int] = {"paper": 0, "l1": 1}
-LEG, ORBIT = 1, 2
+DIRECT, LEG, ORBIT = 0, 1, 2
 """Values of `command.mode`."""
 LONGEST_STEP = 3600.0
 """Longest communication step the model accepts [s]."""
@@ -25,6 +25,7 @@ _LEG = tuple(f"command.leg.{k}" for k in ("from_north", "from_east", "to_north",
 _HOLD = ("command.altitude", "command.airspeed")
 _ORBIT = ("command.orbit.north", "command.orbit.east", "command.orbit.radius")
 _WIND = ("wind.north", "wind.east", "wind.down")
+_SURFACES = tuple(f"command.{k}" for k in ("aileron", "elevator", "rudder", "throttle"))
 
 
 class FmuPlant:
@@ -109,6 +110,7 @@ class FmuPlant:
             raise
         self._leg = Channel(self._instance, _LEG + _HOLD)
         self._orbit = Channel(self._instance, _ORBIT + _HOLD)
+        self._surfaces = Channel(self._instance, _SURFACES)
         self._wind = Channel(self._instance, _WIND)
         self._motion = Channel(self._instance, [f"state.{field}" for field in PlantState._fields[1:]])
         self._command: tuple[float, ...] = ()
@@ -176,11 +178,9 @@ class FmuPlant:
 
     def fly_direct(self, aileron: float, elevator: float, rudder: float, throttle: float) -> None:
         """Give the surfaces [rad] and the throttle (0 to 1) directly."""
-        names = [f"command.{k}" for k in ("aileron", "elevator", "rudder", "throttle")]
-        self._set_inputs(
-            dict(zip(names, (aileron, elevator, rudder, throttle), strict=True)) | {"command.mode": 0}
-        )
-        self._command = ()
+        command = (DIRECT, aileron, elevator, rudder, throttle)
+        if command != self._command:
+            self._give(self._surfaces, command, _SURFACES)
 
     def set_wind(self, north: float, east: float, down: float = 0.0) -> None:
         """Steady wind: the velocity of the air over ground [m/s]."""
@@ -205,6 +205,19 @@ class FmuPlant:
             raise ValueError(f"duration={duration!r}: must be within (0, {LONGEST_STEP:g}] s")
         self._state = None
         self._instance.step(duration)
+
+    def channel(self, names: Sequence[str]) -> Channel:
+        """Real variables that are read together, in one call: names and arrays are prepared once.
+
+        Raises
+        ------
+        ValueError
+            If the model has no real variable of a name.
+        """
+        for name in names:
+            if (kind := self._instance.kind(name)) != "Float64":
+                raise ValueError(f"name={name!r}: is {kind}, not Float64")
+        return Channel(self._instance, names)
 
     def get(self, name: str) -> float:
         """Any variable of the model by name, in SI units and radians."""

@@ -91,6 +91,7 @@ void model_sample(Model *m) {
 static void integrate(Model *m, double h) {
     if (is_kinematic(m)) kinematic_advance(m, h);
     else airframe_advance(m, h);
+    if (m->flight == FLIGHT_LAUNCHED) ground_rest(m);
 }
 
 /* Find the nanosecond of an event between now and `end` by bisection, and stop there. */

@@ -48,6 +48,11 @@ void ground_motion(const Model *m, const double x[], const double R[9], Loads *l
     }
 }
 
+/* Friction stops a rolling aircraft, it does not push it back: after a run-up that is broken off it stands. */
+void ground_rest(Model *m) {
+    if (m->v.launch_mode == LAUNCH_RUNWAY && m->x[X_U] < 0.0) memset(m->x + X_U, 0, 3 * sizeof(double));
+}
+
 static double launch_indicator(const Model *m) {
     const double *x = m->x;
     if (m->v.launch_mode == LAUNCH_CATAPULT)

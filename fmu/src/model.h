@@ -205,6 +205,7 @@ void kinematic_motion(const Model *m, Motion *motion);
 /* ground.c: before an event its indicator is positive */
 enum { INDICATOR_GROUND, INDICATOR_LAUNCH, INDICATOR_BATTERY, N_INDICATORS };
 void ground_motion(const Model *m, const double x[], const double R[9], Loads *loads, double dx[]);
+void ground_rest(Model *m);
 void model_indicators(const Model *m, double indicators[N_INDICATORS]);
 bool event_due(const Model *m);
 bool model_events(Model *m);
