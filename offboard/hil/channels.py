@@ -81,7 +81,7 @@ class Airframe:
         roll = pitch = yaw = throttle = 0.0
         for output in self.outputs:
             value = values[output.channel] if output.channel < len(values) else 0.0
-            if value != value:  # NaN: this output is disarmed
+            if math.isnan(value):  # this output is disarmed
                 continue
             drives = output.drives
             roll += drives.roll * value
@@ -109,7 +109,7 @@ class Airframe:
         return self.axes(values)
 
     def values_for(self, axes: Axes, count: int = 16) -> list[float]:
-        """Outputs by which an autopilot of this airframe asks for `axes` (each surface takes its whole share)."""
+        """Outputs by which an autopilot of this airframe asks for `axes`; every surface takes its part."""
         values = [0.0] * count
         for output in self.outputs:
             wanted = sum(
@@ -179,8 +179,8 @@ def _checked(document: Mapping[str, Any], name: str, mistakes: list[str]) -> Air
     outputs = [_output(index, table, mistakes) for index, table in enumerate(tables)]
     channels = [output.channel for output in outputs]
     mistakes += [f"channel = {c + 1} is given twice" for c in sorted(set(channels)) if channels.count(c) > 1]
-    texts = [str(document.get(key, "")) for key in ("description", "source")]
-    return Airframe(name, str(autopilot), *texts, tuple(outputs))
+    description, source = (str(document.get(key, "")) for key in ("description", "source"))
+    return Airframe(name, str(autopilot), description, source, tuple(outputs))
 
 
 def _output(index: int, table: object, mistakes: list[str]) -> Output:

@@ -1,6 +1,6 @@
 """Failures of sensors: what, from when to when, how much.
 
-Text form, several separated by semicolons: `NAME@START[-END][:VALUE[,VALUE,VALUE]]`, seconds since the start::
+Text form, several separated by semicolons: `NAME@START[-END][:VALUE,VALUE,VALUE]`, seconds since the start::
 
     gps-lost@60-90; airspeed-blocked@120; accel-bias@30:0.5,0,0; gyro-bias@30:0,0.02,0
 """

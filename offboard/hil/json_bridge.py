@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -16,7 +17,7 @@ from offboard.hil.simulation import Simulation
 from offboard.hil.timing import Punctuality
 
 KNOWN_FAULTS = {name: FAULTS[name] for name in ("airspeed-blocked", "accel-bias", "gyro-bias")}
-"""Failures that can be told over this protocol; ArduPilot simulates the other sensors itself (SIM_GPS1_ENABLE …)."""
+"""Failures that can be told over this protocol; ArduPilot simulates the other sensors itself."""
 
 
 @dataclass(slots=True)
@@ -152,5 +153,5 @@ class JsonBridge:
         self._trapped = total if self._trapped is None else self._trapped
         pressure = max(self._trapped - truth.static_pressure, 0.0)
         if truth.differential_pressure <= 0.0 or truth.airspeed <= 0.0:
-            return (2.0 * pressure / 1.225) ** 0.5
-        return truth.airspeed * (pressure / truth.differential_pressure) ** 0.5
+            return math.sqrt(2.0 * pressure / 1.225)
+        return truth.airspeed * math.sqrt(pressure / truth.differential_pressure)

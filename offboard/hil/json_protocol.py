@@ -1,7 +1,7 @@
 """ArduPilot's "JSON" simulator protocol: servo packets in, one line of JSON out; no I/O, no clock.
 
-ArduPilot sends a packet and waits for the answer; after a second without one it sends the same packet again. A
-frame counter that goes back to zero is a firmware that has started again.
+ArduPilot sends a packet and waits for the answer; after a second without one it sends the same packet again.
+A frame counter that goes back to zero is a firmware that has started again.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class Servos(NamedTuple):
 
     rate: int
     """Steps per second that the firmware asks for [Hz]."""
-    count: int
+    frame: int
     """Frame counter."""
     pwm: tuple[int, ...]
     """Pulse widths [µs]; 0: no output."""
@@ -62,7 +62,7 @@ def pack_servos(servos: Servos) -> bytes:
     if len(servos.pwm) not in _MAGICS:
         raise ValueError(f"len(pwm) = {len(servos.pwm)}, must be 16 or 32")
     magic = _MAGICS[len(servos.pwm)]
-    return _HEADER.pack(magic, servos.rate, servos.count) + _CHANNELS[magic].pack(*servos.pwm)
+    return _HEADER.pack(magic, servos.rate, servos.frame) + _CHANNELS[magic].pack(*servos.pwm)
 
 
 def answer(truth: Truth, time: float, north: float, east: float, airspeed: float) -> bytes:
@@ -120,8 +120,8 @@ class JsonSession:
     --------
     >>> session = JsonSession()
     >>> packet = pack_servos(Servos(200, 0, (1500,) * 16))
-    >>> session.take(packet, "a", 0.0)
-    Step(servos=Servos(rate=200, count=0, pwm=(1500, ...)), duration=0.005, restart=False, missed=0)
+    >>> session.take(packet, "a", 0.0).duration
+    0.005
     >>> session.answered(0.001)
     >>> session.take(packet, "a", 0.002), session.take(packet, "a", 1.1)
     (Ignored(why='duplicate'), Repeat())
@@ -137,26 +137,29 @@ class JsonSession:
         servos = parse_servos(data)
         if servos is None:
             return Ignored("garbage")
+        moved, again = sender != self._sender, servos.frame == self._last
         if self._last is None:
             return self._accept(servos, sender)
-        ahead = (servos.count - self._last) % _WRAP
-        moved = sender != self._sender
-        if ahead == 0 and not (moved and servos.count == 0):
-            lost = self._answered is not None and now - self._answered >= _LOST_AFTER
-            if not lost:
-                return Ignored("duplicate")
-            self._answered = now
-            return Repeat()
-        if ahead < _WRAP // 2 and not (moved and servos.count == 0):
-            return self._accept(servos, sender, missed=ahead - 1)
-        if servos.count == 0 or moved:
+        if (moved and servos.frame == 0) or (servos.frame == 0 and not again):
             return self._accept(servos, sender, restart=True)
-        return Ignored("late")
+        if again:
+            return self._again(now)
+        ahead = (servos.frame - self._last) % _WRAP
+        if ahead < _WRAP // 2:
+            return self._accept(servos, sender, missed=ahead - 1)
+        return self._accept(servos, sender, restart=True) if moved else Ignored("late")
 
     def answered(self, now: float) -> None:
         """The answer to the last step has been sent."""
         self._answered = now
 
+    def _again(self, now: float) -> Repeat | Ignored:
+        """The same packet again: was the answer lost, or is it still on its way?"""
+        if self._answered is None or now - self._answered < _LOST_AFTER:
+            return Ignored("duplicate")
+        self._answered = now
+        return Repeat()
+
     def _accept(self, servos: Servos, sender: object, *, restart: bool = False, missed: int = 0) -> Step:
-        self._last, self._sender, self._answered = servos.count, sender, None
+        self._last, self._sender, self._answered = servos.frame, sender, None
         return Step(servos, 1.0 / servos.rate, restart, missed)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from offboard.hil.channels import Airframe
 from offboard.hil.errors import LinkLost
 from offboard.hil.pipes import Pipe, TcpServer, UdpLinks
-from offboard.hil.plant import NEUTRAL, Axes, Truth
+from offboard.hil.plant import NEUTRAL, Truth
 from offboard.hil.px4_protocol import Heard, Px4Link
 from offboard.hil.sensors import Sensors
 from offboard.hil.simulation import Simulation

@@ -2,8 +2,8 @@
 
 Notes
 -----
-In lockstep HIL_SENSOR's time is PX4's clock: PX4 stands still until the next one. The plant runs free until the
-first HIL_ACTUATOR_CONTROLS; from then on one answers each HIL_SENSOR, with the same time.
+In lockstep HIL_SENSOR's time is PX4's clock: PX4 stands still until the next one. The plant runs free until
+the first HIL_ACTUATOR_CONTROLS; from then on one answers each HIL_SENSOR, with the same time.
 """
 
 from __future__ import annotations
@@ -99,9 +99,7 @@ class Px4Link:
             self.broken += 1
             return None
         lockstep = bool(message.flags & LOCKSTEP)
-        return Actuators(
-            message.time_usec, tuple(message.controls), bool(message.mode & ARMED), lockstep
-        )
+        return Actuators(message.time_usec, tuple(message.controls), bool(message.mode & ARMED), lockstep)
 
     def sensor(self, reading: Reading) -> bytes:
         """HIL_SENSOR: FRD, gauss, hectopascal, degrees Celsius."""
@@ -182,8 +180,8 @@ class Px4Link:
 
 
 def pressure_altitude(pressure: float) -> float:
-    """Altitude in the standard atmosphere [m] at a pressure [Pa], below 11 km (US Standard Atmosphere 1976)."""
-    return 288.15 / 0.0065 * (1.0 - (max(pressure, 1.0) / _SEA_LEVEL) ** (1.0 / 5.25587611))
+    """Altitude [m] at a pressure [Pa], below 11 km (US Standard Atmosphere 1976)."""
+    return 288.15 / 0.0065 * (1.0 - math.pow(max(pressure, 1.0) / _SEA_LEVEL, 1.0 / 5.25587611))
 
 
 def _milli_g(force: float) -> int:

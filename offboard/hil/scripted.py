@@ -1,7 +1,7 @@
 """A stand-in for an autopilot: simple controllers that take off, hold altitude and heading, and turn.
 
-It is no product: it stands on the other side of the protocols in tests and in `--self-test`, where no firmware
-may be assumed. Its gains suit aircraft like the Skywalker X8.
+It is no product: it stands on the other side of the protocols in tests and in `--self-test`, where no
+firmware may be assumed. Its gains suit aircraft like the Skywalker X8.
 """
 
 from __future__ import annotations
@@ -53,6 +53,8 @@ class Task:
     """Above the start [m]; negative: glide down with the engine off."""
     airspeed: float = 15.0
     """[m/s]"""
+    bank: float | None = None
+    """Held instead of the heading [rad]."""
     armed: bool = True
     """False: everything neutral."""
 
@@ -77,6 +79,7 @@ class ScriptedPilot:
     runway: float = 0.0
     """Kept while low [rad]."""
     _time: float | None = field(default=None, init=False, repr=False)
+    _roll_integral: float = field(default=0.0, init=False, repr=False)
     _climb_integral: float = field(default=0.0, init=False, repr=False)
     _speed_integral: float = field(default=0.0, init=False, repr=False)
     _pitch_integral: float = field(default=0.0, init=False, repr=False)
@@ -94,8 +97,11 @@ class ScriptedPilot:
             return NEUTRAL
         if b.airspeed < 8.0 and b.altitude < 3.0:  # rolling, or about to
             return Axes(0.0, 0.0, 0.0, 1.0 if task.altitude >= 0.0 else 0.0)
-        bank = self._bank(b, task)
-        roll = _clamp(1.5 * (bank - b.bank) - 0.1 * b.p, 1.0)
+        bank = self._bank(b, task) if task.bank is None else task.bank
+        lean = bank - b.bank
+        if abs(lean) < 0.15:
+            self._roll_integral = _clamp(self._roll_integral + 0.5 * lean * period, 0.3)
+        roll = _clamp(1.5 * lean - 0.1 * b.p + self._roll_integral, 1.0)
         pitch, climb = self._pitch(b, task, period)
         error = pitch - b.pitch
         turn = GRAVITY / max(b.airspeed, 8.0) * math.sin(b.bank) * math.tan(b.bank)

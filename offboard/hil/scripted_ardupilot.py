@@ -23,18 +23,22 @@ FIELDS = {
 }
 """What is looked for: the section it stands in, and how many numbers it has."""
 
+OPTIONAL = ("airspeed",)
+
 
 def read_line(text: str) -> dict[str, tuple[float, ...]]:
-    """The numbers of an answer, found as ArduPilot finds them: by searching for the key, without a JSON parser.
+    """The numbers of an answer, found as ArduPilot finds them: by searching for the key.
 
     Raises
     ------
     ValueError
         If one is missing or has the wrong number of values.
     """
-    found = {}
+    found: dict[str, tuple[float, ...]] = {}
     for key, (section, count) in FIELDS.items():
         begin = text.find(f'"{key}":', text.find(section))
+        if begin < 0 and key in OPTIONAL:
+            continue
         if begin < 0:
             raise ValueError(f"{key} is missing")
         value = text[begin + len(key) + 3 :]
@@ -122,7 +126,7 @@ def _believe(felt: dict[str, tuple[float, ...]]) -> Believed:
     p, q, r = felt["gyro"]
     return Believed(
         felt["timestamp"][0], bank, pitch, heading, p, q, r,
-        -felt["position"][2], -felt["velocity"][2], felt["airspeed"][0],
+        -felt["position"][2], -felt["velocity"][2], felt.get("airspeed", (0.0,))[0],
     )  # fmt: skip
 
 

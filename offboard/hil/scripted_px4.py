@@ -91,7 +91,10 @@ class Estimator:
         return math.atan2(-right, ahead) + self.declination
 
     def _corrected(
-        self, rates: tuple[float, float, float], force: tuple[float, float, float], m: Any  # noqa: ANN401
+        self,
+        rates: tuple[float, float, float],
+        force: tuple[float, float, float],
+        m: Any,  # noqa: ANN401
     ) -> tuple[float, float, float]:
         """Rates that also turn the attitude towards what accelerometer and compass show."""
         p, q, r = rates

@@ -64,9 +64,18 @@ class SensorModel:
     @classmethod
     def silent(cls) -> SensorModel:
         """Without noise and bias, for checks of the plant."""
-        names = [name for name in cls.__dataclass_fields__ if "noise" in name or "bias" in name]
-        names += ["gps_horizontal", "gps_vertical", "gps_speed"]
-        return cls(**dict.fromkeys(names, 0.0))
+        return cls(
+            accel_noise=0.0,
+            accel_bias=0.0,
+            gyro_noise=0.0,
+            gyro_bias=0.0,
+            mag_noise=0.0,
+            baro_noise=0.0,
+            differential_noise=0.0,
+            gps_horizontal=0.0,
+            gps_vertical=0.0,
+            gps_speed=0.0,
+        )
 
 
 class Reading(NamedTuple):
@@ -175,9 +184,8 @@ class Sensors:
         if first or self._count % model.pressure_every == 0:
             updated |= self._pressures(truth)
         self._count += 1
-        accel = self._inertial(
-            (truth.force_x, truth.force_y, truth.force_z), "accel-bias", self._accel_bias, model.accel_noise, time
-        )
+        force = (truth.force_x, truth.force_y, truth.force_z)
+        accel = self._inertial(force, "accel-bias", self._accel_bias, model.accel_noise, time)
         gyro = self._inertial(
             (truth.p, truth.q, truth.r), "gyro-bias", self._gyro_bias, model.gyro_noise, time
         )

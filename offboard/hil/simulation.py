@@ -21,16 +21,7 @@ class LaunchRule:
 
 @dataclass(slots=True)
 class Simulation:
-    """A plant on its own clock.
-
-    Examples
-    --------
-    >>> from tests.offboard.hil.fakes import FakePlant
-    >>> simulation = Simulation(FakePlant())
-    >>> full = Axes(0.0, 0.0, 0.0, 1.0)
-    >>> [simulation.step(full, 0.25).time for _ in range(3)], simulation.phase.name
-    ([0.25, 0.5, 0.75], 'LAUNCHING')
-    """
+    """A plant on its own clock: command, step, look; launched by its rule, put back when asked."""
 
     plant: HilPlant
     """The aircraft."""
@@ -82,6 +73,9 @@ class Simulation:
         self.restarts += 1
 
     def _consider_launch(self, axes: Axes, duration: float) -> None:
-        self._asked = self._asked + duration if axes.throttle >= self.rule.throttle else 0.0
+        if axes.throttle < self.rule.throttle:
+            self._asked = 0.0
+            return
+        self._asked += duration
         if self._asked >= self.rule.delay - 1e-9:
             self.plant.launch()

@@ -6,7 +6,7 @@ import time
 from dataclasses import dataclass, field
 
 PARTS = ("plant", "sensors", "protocol", "transport", "autopilot")
-"""The FMU; noise, GPS, magnetic field; packing and parsing; sockets; the other side, if it runs in this process."""
+"""The FMU; noise, GPS, magnetic field; packing and parsing; sockets; the other side, or waiting for it."""
 
 
 @dataclass(slots=True)
