@@ -82,7 +82,7 @@ def advance(
             return progress
         elif target.loiter_time > 0.0:
             return Progress(progress.current, progress.origin, time + target.loiter_time)
-        progress = _next_leg(progress.current + 1, target.waypoint, targets, position)
+        progress = next_leg(progress.current + 1, target.waypoint, targets, position)
     return progress
 
 
@@ -102,7 +102,7 @@ def _past_end(origin: Waypoint, end: Waypoint, north: float, east: float) -> boo
     return (north - end.north) * leg_north + (east - end.east) * leg_east >= 0.0
 
 
-def _next_leg(
+def next_leg(
     current: int, left: Waypoint, targets: Sequence[Target], position: tuple[float, float, float]
 ) -> Progress:
     """The leg from the target just left to the next, or from the vehicle if it is past that leg's end."""

@@ -1,0 +1,435 @@
+"""The simulated autopilot: bytes in, time steps, bytes out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from offboard.framing import Framer
+from offboard.link import VehicleState
+from offboard.sitl.aircraft import Aircraft
+from offboard.sitl.ardupilot import ARDUPILOT, MISSION_TOTAL
+from offboard.sitl.captain import Captain
+from offboard.sitl.commands import Command, Commands
+from offboard.sitl.dialect import Codec, Message, mavlink
+from offboard.sitl.flavour import Flavour, Role, Say
+from offboard.sitl.items import WireItem
+from offboard.sitl.missions import MISSION, MissionProtocol
+from offboard.sitl.parameters import Parameters
+from offboard.sitl.px4 import PX4
+from offboard.sitl.telemetry import SECONDS, Streams, Telemetry
+
+FLAVOURS: dict[str, Flavour] = {"px4": PX4, "ardupilot": ARDUPILOT}
+"""Autopilots by the name that users give."""
+AUTOPILOT = mavlink.MAV_COMP_ID_AUTOPILOT1
+LONGEST_QUEUE = 20_000
+"""Frames that wait for a link which nobody empties; older ones are dropped."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """How an autopilot is set up."""
+
+    flavour: Flavour = PX4
+    system_id: int = 1
+    parameters: Mapping[str, float] = field(default_factory=dict)
+    """Values other than the autopilot's own."""
+    start_time: float = 0.0
+    """Unix time at which it is switched on [s]."""
+    retry: float = 0.2
+    """Time until a mission item is asked for again [s]; faster than real time this is simulated time."""
+    warm_up: float = 0.0
+    """It cannot be armed for so long after it was switched on [s]."""
+
+
+class _Link:
+    """One way to the outside: its own frame numbers, streams and left-over bytes."""
+
+    def __init__(self, system_id: int) -> None:
+        self.codec = Codec(system_id)
+        self.framer = Framer(self.codec.decode)
+        self.streams = Streams()
+        self.out: list[bytes] = []
+
+
+class Autopilot:
+    """A MAVLink autopilot that flies an aircraft; it knows no transport and no clock.
+
+    Whoever owns time calls `step`, or `aircraft.advance` and then `tick`; whoever owns the transport
+    calls `feed` and `flush`, with a number of its own for each peer.
+
+    Parameters
+    ----------
+    aircraft : Aircraft
+        What it flies.
+    settings : Settings
+        How it is set up. Airspeed, acceptance radius and bank limit among its parameters are the
+        aircraft's, unless others are given.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is unknown or out of range, or the system ID.
+    """
+
+    def __init__(self, aircraft: Aircraft, settings: Settings | None = None) -> None:
+        self.settings = settings or Settings()
+        if not 1 <= self.settings.system_id <= 255:
+            raise ValueError(f"system_id = {self.settings.system_id}, must be between 1 and 255")
+        self.aircraft = aircraft
+        self.flavour = self.settings.flavour
+        self.parameters = Parameters(
+            self.flavour.parameters, self._given(aircraft), bytewise=self.flavour.bytewise
+        )
+        self.captain = Captain(aircraft, self.flavour, self.parameters, self._say, self._item_reached)
+        self.telemetry = Telemetry(self.captain, self.settings.start_time)
+        self._links: dict[int, _Link] = {}
+        self._missions = MissionProtocol(self.flavour, self, self._send, self.settings.retry)
+        self._commands = Commands(self.captain, self, self._say)
+        self._text_id = 0
+        self._reached: tuple[int, int, float] | None = None
+        self._shown: tuple[object, ...] = ()
+        self._shown_aim: object = None
+        self._handlers: dict[str, Callable[[int, Message], None]] = {
+            "COMMAND_LONG": self._command,
+            "COMMAND_INT": self._command,
+            "SET_MODE": self._set_mode,
+            "MISSION_SET_CURRENT": self._set_current,
+            "PARAM_REQUEST_LIST": self._list_parameters,
+            "PARAM_REQUEST_READ": self._read_parameter,
+            "PARAM_SET": self._set_parameter,
+            "REQUEST_DATA_STREAM": self._data_stream,
+            "PING": self._ping,
+            "TIMESYNC": self._timesync,
+        }
+        if self.flavour.home_item:
+            self._store((self.home(),))
+
+    # The public face
+
+    def feed(self, data: bytes, link: int = 0) -> None:
+        """Bytes that have come in on a link, whole frames or not, garbage or not."""
+        messages = self._link(link).framer.feed(data)
+        for message in messages:
+            self._handle(link, message)
+        if messages:
+            self.captain.step()
+            self._tell_changes()
+
+    def step(self, duration: float) -> None:
+        """Let `duration` seconds pass: fly, then tell of it."""
+        self.aircraft.advance(duration)
+        self.tick()
+
+    def tick(self) -> None:
+        """What is to be done and told at the present instant, after the aircraft has moved on."""
+        now = self.aircraft.clock
+        self.captain.step()
+        self._missions.step(now)
+        self._tell_changes()
+        self._repeat_reached(now)
+        made: dict[int, Message | None] = {}
+        for link in self._links.values():
+            for message_id in link.streams.due(now):
+                if message_id not in made:
+                    made[message_id] = self.telemetry.message(message_id)
+                if (message := made[message_id]) is not None:
+                    link.out.append(link.codec.pack(message))
+
+    def flush(self, link: int = 0) -> bytes:
+        """What is to be sent on a link."""
+        return b"".join(self.frames(link))
+
+    def frames(self, link: int = 0) -> list[bytes]:
+        """The same, frame by frame."""
+        state = self._link(link)
+        out, state.out = state.out, []
+        return out
+
+    def open(self, link: int) -> None:
+        """Begin to send on a link."""
+        self._link(link)
+
+    def close(self, link: int) -> None:
+        """Forget a link."""
+        self._links.pop(link, None)
+
+    def broadcast(self, message: Message) -> None:
+        """Send a message on every link."""
+        for link in self._links.values():
+            link.out.append(link.codec.pack(message))
+            del link.out[:-LONGEST_QUEUE]
+
+    def load_mission(self, items: Sequence[WireItem]) -> None:
+        """Put a mission in the memory, as if it had been there at power-on; home goes in by itself."""
+        self._store((self.home(), *items) if self.flavour.home_item else tuple(items))
+
+    def restart(self) -> None:
+        """Switch off and on again: the clock begins at 0, the mode is the first, the mission is kept."""
+        self.aircraft.clock = 0.0
+        self.captain.power_on()
+        for link in self._links.values():
+            link.streams = Streams()
+        self._reached = None
+
+    # What a world needs of a vehicle
+
+    @property
+    def finished(self) -> bool:
+        """Never: it goes on until it is switched off."""
+        return False
+
+    def state(self) -> VehicleState:
+        """Position and motion."""
+        return self.aircraft.vehicle_state()
+
+    def advance(self, duration: float) -> None:
+        """Fly on; `tick` tells of it."""
+        self.aircraft.advance(duration)
+        self.captain.step()
+
+    # What the mission protocol needs
+
+    def home(self) -> WireItem:
+        """Home as an item."""
+        frame = self.aircraft.frame
+        latitude, longitude = round(frame.latitude_deg * 1e7), round(frame.longitude_deg * 1e7)
+        return WireItem(
+            mavlink.MAV_FRAME_GLOBAL,
+            mavlink.MAV_CMD_NAV_WAYPOINT,
+            x=latitude,
+            y=longitude,
+            z=frame.altitude_m,
+        )
+
+    def current_item(self) -> int:
+        """Seq of the item that is flown to."""
+        return self.captain.current
+
+    def uploaded(self, items: Sequence[WireItem], flagged: int | None) -> None:
+        """A mission has come in as a whole."""
+        self.captain.take_mission(items, flagged)
+
+    def overwritten(self, items: Sequence[WireItem], complete: bool) -> None:
+        """One item of the mission has been written over, or the last one of an upload."""
+        self.captain.overwrite(items)
+        self.parameters.set(MISSION_TOTAL, len(items))
+        self.broadcast(self.parameters.message(MISSION_TOTAL, index=0xFFFF))
+        if complete:
+            self._say(Say.RECEIVED)
+
+    def gave_up(self) -> None:
+        """An upload has come to nothing."""
+        self._say(Say.GAVE_UP)
+
+    # What commands need
+
+    def send_message(self, link: int, message_id: int) -> bool:
+        """Send one message; False if there is no such message."""
+        message = self.telemetry.message(message_id)
+        if message is not None:
+            self._send(link, message)
+        return self.telemetry.knows(message_id)
+
+    def set_interval(self, link: int, message_id: int, interval: float) -> bool:
+        """Send a message every so often [s], 0 as usual, negative never; False if there is none such."""
+        if message_id not in SECONDS:
+            return False
+        streams = self._link(link).streams
+        if interval == 0.0:
+            streams.usual(message_id)
+        else:
+            streams.set(message_id, interval)
+        return True
+
+    def tell_interval(self, link: int, message_id: int) -> None:
+        """Tell how often a message is sent."""
+        interval = self._link(link).streams.intervals.get(message_id)
+        microseconds = 0 if interval is None else -1 if math.isinf(interval) else round(1e6 * interval)
+        self._send(link, mavlink.MAVLink_message_interval_message(message_id, microseconds))
+
+    def armable(self) -> str | None:
+        """Why the aircraft cannot be armed yet; None if it can."""
+        return "Gyros inconsistent" if self.aircraft.clock < self.settings.warm_up else None
+
+    # Inside
+
+    def _given(self, aircraft: Aircraft) -> dict[str, float]:
+        """Parameters that are the aircraft's, under those given."""
+        performance, roles = aircraft.performance, self.flavour.roles
+        own = {
+            roles[Role.AIRSPEED]: performance.airspeed,
+            roles[Role.ACCEPTANCE]: performance.acceptance_radius,
+            roles[Role.BANK]: round(math.degrees(performance.max_bank), 3),
+        }
+        identity = next(name for name in ("MAV_SYS_ID", "SYSID_THISMAV") if name in self.flavour.parameters)
+        return own | {identity: self.settings.system_id} | dict(self.settings.parameters)
+
+    def _store(self, items: Sequence[WireItem]) -> None:
+        self._missions.store(MISSION, items)
+        if self.flavour.atomic:
+            self.captain.take_mission(items, None)
+        else:
+            self.captain.overwrite(items)
+            self.parameters.set(MISSION_TOTAL, len(items))
+
+    def _link(self, link: int) -> _Link:
+        if link not in self._links:
+            self._links[link] = _Link(self.settings.system_id)
+        return self._links[link]
+
+    def _send(self, link: int, message: Message) -> None:
+        state = self._link(link)
+        state.out.append(state.codec.pack(message))
+
+    def _handle(self, link: int, message: Message) -> None:
+        """Do what a message asks, if it is for us and not from someone who pretends to be us."""
+        header = message.get_header()
+        if header.srcSystem in (0, self.settings.system_id) and header.srcComponent in (0, AUTOPILOT):
+            return
+        if getattr(message, "target_system", 0) not in (0, self.settings.system_id):
+            return
+        if getattr(message, "target_component", 0) not in (0, AUTOPILOT):
+            return
+        partner = (link, header.srcSystem, header.srcComponent)
+        if self._guided_item(link, message) or self._missions.handle(partner, message, self.aircraft.clock):
+            return
+        handler = self._handlers.get(message.get_type())
+        if handler is not None:
+            handler(link, message)
+
+    def _command(self, link: int, message: Message) -> None:
+        header = message.get_header()
+        result = self._commands.carry_out(Command.of(message), link)
+        ack = mavlink.MAVLink_command_ack_message(
+            message.command, result, 0, 0, header.srcSystem, header.srcComponent
+        )
+        self._send(link, ack)
+
+    def _guided_item(self, link: int, message: Message) -> bool:
+        """ArduPilot's old way to a place: a mission item with `current` 2; 3 changes the altitude alone."""
+        is_item = message.get_type() in ("MISSION_ITEM", "MISSION_ITEM_INT")
+        if not is_item or not self.flavour.home_item or message.current not in (2, 3):
+            return False
+        item, header = WireItem.of(message), message.get_header()
+        result = item.problem(MISSION, nan_allowed=False)
+        if result is None:
+            open_place = message.current == 3
+            place = (math.nan, math.nan) if open_place else (item.latitude_deg, item.longitude_deg)
+            command = Command(
+                mavlink.MAV_CMD_DO_REPOSITION, (-1.0, 1.0, 0.0, math.nan), *place, item.z, item.frame
+            )
+            done = self._commands.carry_out(command, link) == mavlink.MAV_RESULT_ACCEPTED
+            result = mavlink.MAV_MISSION_ACCEPTED if done else mavlink.MAV_MISSION_ERROR
+        answer = mavlink.MAVLink_mission_ack_message(header.srcSystem, header.srcComponent, result)
+        self._send(link, answer)
+        return True
+
+    def _set_mode(self, link: int, message: Message) -> None:  # noqa: ARG002
+        if message.base_mode & mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED:
+            self._commands.change_mode(message.custom_mode)
+
+    def _set_current(self, link: int, message: Message) -> None:
+        if self.captain.set_current(message.seq):
+            self.send_message(link, mavlink.MAVLINK_MSG_ID_MISSION_CURRENT)
+
+    def _list_parameters(self, link: int, message: Message) -> None:  # noqa: ARG002
+        for each in self.parameters.all():
+            self._send(link, each)
+
+    def _read_parameter(self, link: int, message: Message) -> None:
+        answer = self.parameters.asked(message)
+        if answer is not None:
+            self._send(link, answer)
+
+    def _set_parameter(self, link: int, message: Message) -> None:  # noqa: ARG002
+        name = self.parameters.taken(message)
+        if name is not None:
+            self.broadcast(self.parameters.message(name))
+
+    def _data_stream(self, link: int, message: Message) -> None:
+        """The old way to ask for a rate; all groups alike, heartbeat and clock apart."""
+        rate = message.req_message_rate if message.start_stop else 0
+        streams = self._link(link).streams
+        for message_id in _GROUPS.get(message.req_stream_id, ()):
+            streams.set(message_id, 1.0 / rate if rate else 0.0)
+
+    def _ping(self, link: int, message: Message) -> None:
+        header = message.get_header()
+        if message.target_system == 0:
+            self._send(
+                link,
+                mavlink.MAVLink_ping_message(
+                    message.time_usec, message.seq, header.srcSystem, header.srcComponent
+                ),
+            )
+
+    def _timesync(self, link: int, message: Message) -> None:
+        if message.tc1 == 0:
+            now = round(self.aircraft.clock * 1e9)
+            self._send(link, mavlink.MAVLink_timesync_message(now, message.ts1))
+
+    def _say(self, event: Say, **values: object) -> None:
+        """Tell an event as text, if this autopilot does."""
+        text = self.flavour.texts.get(event)
+        if text is None:
+            return
+        self._text_id = (self._text_id + 1) % 0xFFFF if self.flavour.atomic else 0
+        words = text[1].format(**values).encode()[:50]
+        self.broadcast(mavlink.MAVLink_statustext_message(text[0], words, self._text_id, 0))
+
+    def _item_reached(self, seq: int) -> None:
+        self.broadcast(mavlink.MAVLink_mission_item_reached_message(seq))
+        self._reached = (seq, self.flavour.reached_repeats - 1, self.aircraft.clock + 1.0)
+
+    def _repeat_reached(self, now: float) -> None:
+        """PX4 says again and again which item it has reached last."""
+        if self._reached is None or now < self._reached[2]:
+            return
+        seq, left, due = self._reached
+        if left <= 0:
+            self._reached = None
+            return
+        self.broadcast(mavlink.MAVLink_mission_item_reached_message(seq))
+        self._reached = (seq, left - 1, due + 1.0)
+
+    def _tell_changes(self) -> None:
+        """Mode, mission and target are told as soon as they change."""
+        captain = self.captain
+        mode = (captain.mode, captain.armed)
+        mission = (captain.current, captain.items, captain.mission_state)
+        if self._shown != (mode, mission):
+            before, self._shown = self._shown, (mode, mission)
+            if before[:1] != (mode,):
+                self._tell(mavlink.MAVLINK_MSG_ID_HEARTBEAT)
+            if before[1:] != (mission,):
+                self._tell(mavlink.MAVLINK_MSG_ID_MISSION_CURRENT)
+        if self.aircraft.aim != self._shown_aim:
+            self._shown_aim = self.aircraft.aim
+            self._tell(mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT)
+            self._tell(mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT)
+
+    def _tell(self, message_id: int) -> None:
+        message = self.telemetry.message(message_id)
+        if message is not None:
+            self.broadcast(message)
+
+
+_GROUPS = {
+    mavlink.MAV_DATA_STREAM_EXTENDED_STATUS: (
+        mavlink.MAVLINK_MSG_ID_SYS_STATUS,
+        mavlink.MAVLINK_MSG_ID_GPS_RAW_INT,
+        mavlink.MAVLINK_MSG_ID_MISSION_CURRENT,
+        mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT,
+        mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT,
+    ),
+    mavlink.MAV_DATA_STREAM_POSITION: (
+        mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT,
+        mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED,
+    ),
+    mavlink.MAV_DATA_STREAM_EXTRA1: (mavlink.MAVLINK_MSG_ID_ATTITUDE,),
+    mavlink.MAV_DATA_STREAM_EXTRA2: (mavlink.MAVLINK_MSG_ID_VFR_HUD,),
+}
+_GROUPS[mavlink.MAV_DATA_STREAM_ALL] = tuple(message for group in _GROUPS.values() for message in group)
+"""What the old data streams stand for."""

@@ -1,0 +1,313 @@
+"""MAVLink's mission protocol, the vehicle's side: missions, geofences and rally points, up and down."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Protocol
+
+from offboard.sitl.dialect import Extended, Message, mavlink
+from offboard.sitl.flavour import Flavour
+from offboard.sitl.items import WireItem, checksum
+
+MISSION = mavlink.MAV_MISSION_TYPE_MISSION
+TYPES = (MISSION, mavlink.MAV_MISSION_TYPE_FENCE, mavlink.MAV_MISSION_TYPE_RALLY)
+MOST_ATTEMPTS = 25
+"""How often an item is asked for before an upload is given up."""
+ACCEPTED = mavlink.MAV_MISSION_ACCEPTED
+
+Partner = tuple[int, int, int]
+"""Link, system and component of whoever talks."""
+
+
+class Owner(Protocol):
+    """Whoever flies the missions."""
+
+    def home(self) -> WireItem:
+        """Home as an item."""
+
+    def current_item(self) -> int:
+        """Seq of the item that is flown to."""
+
+    def uploaded(self, items: Sequence[WireItem], flagged: int | None) -> None:
+        """A mission has come in as a whole."""
+
+    def overwritten(self, items: Sequence[WireItem], complete: bool) -> None:
+        """One item of the mission has been written over, or the last one of an upload."""
+
+    def gave_up(self) -> None:
+        """An upload has come to nothing."""
+
+
+@dataclass(slots=True)
+class Upload:
+    """An upload under way."""
+
+    partner: Partner
+    kind: int
+    end: int
+    """Seq behind the last item."""
+    next: int
+    """Seq of the item asked for."""
+    items: list[WireItem] = field(default_factory=list)
+    flagged: int | None = None
+    attempts: int = 1
+    asked_at: float = 0.0
+
+
+class MissionProtocol:
+    """Answers mission messages; asks again for what got lost.
+
+    Parameters
+    ----------
+    flavour : Flavour
+        Whose rules hold.
+    owner : Owner
+        Told what comes in.
+    send : callable
+        Sends a message on a link.
+    retry : float
+        Time until an item is asked for again [s].
+    """
+
+    def __init__(
+        self, flavour: Flavour, owner: Owner, send: Callable[[int, Message], None], retry: float
+    ) -> None:
+        self.lists: dict[int, tuple[WireItem, ...]] = {kind: () for kind in TYPES}
+        self._flavour = flavour
+        self._owner = owner
+        self._send = send
+        self._retry = retry
+        self._upload: Upload | None = None
+        self._finished: tuple[Partner, int, int] | None = None
+        self._ints: set[int] = set()
+        self._handlers: dict[str, Callable[[Partner, Message, float], None]] = {
+            "MISSION_COUNT": self._count,
+            "MISSION_ITEM": self._item,
+            "MISSION_ITEM_INT": self._item,
+            "MISSION_WRITE_PARTIAL_LIST": self._write_partial,
+            "MISSION_REQUEST_LIST": self._list,
+            "MISSION_REQUEST_PARTIAL_LIST": self._list_partial,
+            "MISSION_REQUEST": self._request,
+            "MISSION_REQUEST_INT": self._request,
+            "MISSION_ACK": self._ack,
+            "MISSION_CLEAR_ALL": self._clear,
+        }
+
+    def handle(self, partner: Partner, message: Message, now: float) -> bool:
+        """Do what a message asks; False if it is none of this protocol."""
+        handler = self._handlers.get(message.get_type())
+        if handler is None:
+            return False
+        kind = getattr(message, "mission_type", MISSION)
+        if kind == mavlink.MAV_MISSION_TYPE_ALL and message.get_type() == "MISSION_CLEAR_ALL":
+            handler(partner, message, now)
+        elif kind not in TYPES:
+            self._answer(partner, mavlink.MAV_MISSION_UNSUPPORTED, kind)
+        else:
+            handler(partner, message, now)
+        return True
+
+    def step(self, now: float) -> None:
+        """Ask again for an item that does not come; give up after a while."""
+        upload = self._upload
+        if upload is None or now < upload.asked_at + self._retry:
+            return
+        if upload.attempts >= MOST_ATTEMPTS:
+            self._upload = None
+            self._answer(upload.partner, mavlink.MAV_MISSION_OPERATION_CANCELLED, upload.kind)
+            self._owner.gave_up()
+            return
+        upload.attempts += 1
+        self._ask(upload, now)
+
+    def store(self, kind: int, items: Sequence[WireItem]) -> None:
+        """Keep a list as it is."""
+        self.lists[kind] = tuple(items)
+
+    # Up
+
+    def _count(self, partner: Partner, message: Message, now: float) -> None:
+        kind, count = message.mission_type, message.count
+        busy = self._upload
+        if busy is not None and busy.partner != partner:
+            self._answer(partner, mavlink.MAV_MISSION_ERROR, kind)
+        elif count > self._flavour.most_items:
+            self._answer(partner, mavlink.MAV_MISSION_NO_SPACE, kind)
+        elif busy is not None and busy.kind == kind and busy.end == count and busy.next == 0:
+            self._ask(busy, now)
+        elif count == 0:
+            self._upload = None
+            self._replace(kind, (), None)
+            self._answer(partner, ACCEPTED, kind)
+        else:
+            self._finished = None
+            self._upload = Upload(partner, kind, count, 0)
+            if self._in_place(kind):
+                self.lists[kind] = self.lists[kind][:count]
+                self._owner.overwritten(self.lists[kind], complete=False)
+            self._ask(self._upload, now)
+
+    def _write_partial(self, partner: Partner, message: Message, now: float) -> None:
+        kind, start, end = message.mission_type, message.start_index, message.end_index
+        if not self._in_place(kind):
+            self._answer(partner, mavlink.MAV_MISSION_UNSUPPORTED, kind)
+        elif self._upload is not None or not 0 <= start <= end <= len(self.lists[kind]):
+            self._answer(partner, mavlink.MAV_MISSION_ERROR, kind)
+        else:
+            self._finished = None
+            self._upload = Upload(partner, kind, end + 1, start)
+            self._ask(self._upload, now)
+
+    def _item(self, partner: Partner, message: Message, now: float) -> None:
+        if message.get_type() == "MISSION_ITEM_INT":
+            self._ints.add(partner[0])
+        upload, kind, seq = self._upload, message.mission_type, message.seq
+        if upload is None or upload.partner != partner or upload.kind != kind:
+            if self._finished == (partner, kind, seq):
+                self._answer(partner, ACCEPTED, kind)  # our acknowledgement got lost
+            return
+        if seq >= upload.end:
+            self._refuse(upload, mavlink.MAV_MISSION_INVALID_SEQUENCE)
+            return
+        if seq != upload.next:
+            return  # a copy, or one that has overtaken another; what is wanted is asked for again
+        item = WireItem.of(message)
+        problem = item.problem(kind, nan_allowed=self._flavour.atomic)
+        if problem is not None:
+            self._refuse(upload, problem)
+            return
+        self._take(upload, item, bool(message.current), now)
+
+    def _take(self, upload: Upload, item: WireItem, flagged: bool, now: float) -> None:
+        """One more item; the last one ends the upload."""
+        if flagged:
+            upload.flagged = upload.next
+        if self._flavour.atomic and item.command == mavlink.MAV_CMD_NAV_TAKEOFF:
+            item = replace(item, param1=0.0)  # PX4 does not keep the pitch
+        upload.items.append(item)
+        if self._in_place(upload.kind):
+            if upload.next == 0:
+                item = self._owner.home()
+            items = list(self.lists[upload.kind])
+            items[upload.next : upload.next + 1] = [item]
+            self.lists[upload.kind] = tuple(items)
+        upload.next += 1
+        if upload.next < upload.end:
+            if self._in_place(upload.kind):
+                self._owner.overwritten(self.lists[upload.kind], complete=False)
+            upload.attempts = 1
+            self._ask(upload, now)
+            return
+        self._upload = None
+        self._finished = (upload.partner, upload.kind, upload.end - 1)
+        self._replace(upload.kind, upload.items, upload.flagged, upload.partner)
+
+    def _replace(
+        self,
+        kind: int,
+        items: Sequence[WireItem],
+        flagged: int | None,
+        partner: Partner | None = None,
+    ) -> None:
+        """A list is complete: acknowledge it, then act on it."""
+        if not self._in_place(kind):
+            self.lists[kind] = tuple(items)
+        elif not items:
+            self.lists[kind] = ()
+        if partner is not None:
+            self._answer(partner, ACCEPTED, kind)
+        if kind != MISSION:
+            return
+        if self._flavour.atomic:
+            self._owner.uploaded(items, flagged)
+        else:
+            self._owner.overwritten(self.lists[kind], complete=True)
+
+    def _in_place(self, kind: int) -> bool:
+        return kind == MISSION and not self._flavour.atomic
+
+    def _ask(self, upload: Upload, now: float) -> None:
+        """Ask for the next item: PX4 for integers once it knows that the other side has them."""
+        upload.asked_at = now
+        link, system, component = upload.partner
+        ints = self._flavour.atomic and link in self._ints
+        ask = mavlink.MAVLink_mission_request_int_message if ints else mavlink.MAVLink_mission_request_message
+        self._send(link, ask(system, component, upload.next, upload.kind))
+
+    def _refuse(self, upload: Upload, result: int) -> None:
+        self._upload = None
+        self._answer(upload.partner, result, upload.kind)
+
+    def _ack(self, partner: Partner, message: Message, now: float) -> None:
+        upload = self._upload
+        if upload is None or upload.partner != partner or upload.kind != message.mission_type:
+            return
+        if message.type == mavlink.MAV_MISSION_UNSUPPORTED and partner[0] not in self._ints:
+            self._ints.add(partner[0])
+            self._ask(upload, now)
+        elif message.type != ACCEPTED:
+            self._upload = None
+
+    def _clear(self, partner: Partner, message: Message, now: float) -> None:  # noqa: ARG002
+        wanted = TYPES if message.mission_type == mavlink.MAV_MISSION_TYPE_ALL else (message.mission_type,)
+        if self._upload is not None:
+            self._answer(partner, mavlink.MAV_MISSION_ERROR, message.mission_type)
+            return
+        for kind in wanted:
+            self._replace(kind, (), None)
+        self._answer(partner, ACCEPTED, message.mission_type)
+
+    # Down
+
+    def _list(self, partner: Partner, message: Message, now: float) -> None:  # noqa: ARG002
+        link, system, component = partner
+        kind = message.mission_type
+        items = self.lists[kind]
+        answer = mavlink.MAVLink_mission_count_message(system, component, len(items), kind)
+        self._send(link, Extended(answer, checksum(items)) if self._flavour.atomic else answer)
+
+    def _list_partial(self, partner: Partner, message: Message, now: float) -> None:  # noqa: ARG002
+        """A part of the list: its items, one after the other."""
+        kind, items = message.mission_type, self.lists[message.mission_type]
+        start = message.start_index
+        end = len(items) - 1 if message.end_index == -1 else message.end_index
+        if not 0 <= start <= end < len(items):
+            self._answer(partner, mavlink.MAV_MISSION_INVALID_SEQUENCE, kind)
+            return
+        for seq in range(start, end + 1):
+            self._send(partner[0], self._item_message(partner, seq, kind, ints=True))
+
+    def _request(self, partner: Partner, message: Message, now: float) -> None:  # noqa: ARG002
+        kind, seq = message.mission_type, message.seq
+        if not 0 <= seq < len(self.lists[kind]):
+            self._answer(partner, mavlink.MAV_MISSION_INVALID_SEQUENCE, kind)
+            return
+        ints = message.get_type() == "MISSION_REQUEST_INT"
+        if ints:
+            self._ints.add(partner[0])
+        self._send(partner[0], self._item_message(partner, seq, kind, ints))
+
+    def _item_message(self, partner: Partner, seq: int, kind: int, ints: bool) -> Message:
+        item, plain = self.lists[kind][seq], self._flavour.download_frames
+        current = int(not plain and kind == MISSION and seq == self._owner.current_item())
+        frame = PLAIN.get(item.frame, item.frame) if plain else item.frame
+        make, x, y = mavlink.MAVLink_mission_item_message, item.latitude_deg, item.longitude_deg
+        if ints:
+            make, x, y = mavlink.MAVLink_mission_item_int_message, item.x, item.y
+        to, parameters = partner[1:], (item.param1, item.param2, item.param3, item.param4)
+        rest = (item.command, current, item.autocontinue, *parameters, x, y, item.z, kind)
+        return make(*to, seq, frame, *rest)
+
+    def _answer(self, partner: Partner, result: int, kind: int) -> None:
+        link, system, component = partner
+        answer = mavlink.MAVLink_mission_ack_message(system, component, result, kind)
+        known = self.lists.get(kind, ())
+        self._send(link, Extended(answer, checksum(known)) if self._flavour.atomic else answer)
+
+
+PLAIN = {
+    mavlink.MAV_FRAME_GLOBAL_INT: mavlink.MAV_FRAME_GLOBAL,
+    mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT: mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT,
+}
+"""The frame in which ArduPilot gives an item back."""
