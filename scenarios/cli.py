@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scenarios import __version__, compare_commands, fmu_commands
+from scenarios import __version__, compare_commands, fmu_commands, sitl_commands
 from scenarios.command_errors import INTERRUPTED, OK, UNSAFE, expected_errors
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ app = typer.Typer(
 )
 app.add_typer(fmu_commands.app)
 app.command()(compare_commands.compare)
+app.command()(sitl_commands.sitl)
 
 
 def main() -> None:

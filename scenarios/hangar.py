@@ -111,6 +111,30 @@ class Hangar:
         )
         return FlownMover(plan, vehicle, self._scenario.wind.speed)
 
+    def own_plant(
+        self, mission: Sequence[Point] | None = None, *, on_ground: bool = False
+    ) -> tuple[FmuPlant, Performance]:
+        """A plant for somebody else's autopilot, and what it can do.
+
+        Parameters
+        ----------
+        mission : sequence of Point, optional
+            It is put at the first point, its nose to the second; the scenario's own if not given.
+        on_ground : bool
+            Stand there on a catapult, instead of flying there in level trim.
+        """
+        settings = self._scenario.vehicle
+        plant, performance = self._plant(
+            self._scenario.mission if mission is None else mission,
+            airspeed=settings.airspeed,
+            fidelity=settings.fidelity,
+            acceptance_radius=settings.acceptance_radius or self._parameters.acceptance_radius,
+            heading=settings.heading,
+            on_ground=on_ground,
+        )
+        self._own.append(plant)
+        return plant, performance
+
     def _vehicle(
         self,
         points: Sequence[Point],
@@ -120,6 +144,28 @@ class Hangar:
         acceptance_radius: float,
         heading: float | None = None,
     ) -> SimulatedVehicle:
+        plant, performance = self._plant(
+            points,
+            airspeed=airspeed,
+            fidelity=fidelity,
+            acceptance_radius=acceptance_radius,
+            heading=heading,
+        )
+        vehicle = SimulatedVehicle(plant, self.frame, performance)
+        vehicle.upload_mission(mission_plan(points, self.frame))
+        vehicle.start_mission()
+        return vehicle
+
+    def _plant(
+        self,
+        points: Sequence[Point],
+        *,
+        airspeed: float,
+        fidelity: Fidelity,
+        acceptance_radius: float,
+        heading: float | None = None,
+        on_ground: bool = False,
+    ) -> tuple[FmuPlant, Performance]:
         from fmu.plant import FmuPlant  # noqa: PLC0415
 
         start, then = points[0], points[1]
@@ -134,12 +180,12 @@ class Hangar:
                 guidance=self._parameters.guidance,
                 north=start.north,
                 east=start.east,
-                altitude=start.altitude,
+                altitude=0.0 if on_ground else start.altitude,
                 heading=heading,
                 airspeed=airspeed,
                 home_elevation=self._scenario.home.altitude_m,
                 wind=(wind.north, wind.east, 0.0),
-                parameters=self._place_and_time(),
+                parameters=self._place_and_time() | {"launch.mode": 1.0 if on_ground else 0.0},
             )
         except ValueError as error:
             raise ScenarioError(self._scenario.name, f"the aircraft cannot be flown so: {error}") from error
@@ -153,10 +199,7 @@ class Hangar:
             capture_distance=CAPTURE_DISTANCE[self._parameters.guidance],
             wind_bound=wind.speed,
         )
-        vehicle = SimulatedVehicle(plant, self.frame, performance)
-        vehicle.upload_mission(mission_plan(points, self.frame))
-        vehicle.start_mission()
-        return vehicle
+        return plant, performance
 
     def _place_and_time(self) -> dict[str, float]:
         """Where and when the aircraft flies, for the sun on its wings."""

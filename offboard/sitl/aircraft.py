@@ -1,4 +1,4 @@
-"""The aircraft of a simulated autopilot: a plant, the ground below it, and a clock that runs before it flies."""
+"""The aircraft of a simulated autopilot: a plant, the ground below it, a clock that runs before it flies."""
 
 from __future__ import annotations
 

@@ -214,8 +214,9 @@ class Autopilot:
     def overwritten(self, items: Sequence[WireItem], complete: bool) -> None:
         """One item of the mission has been written over, or the last one of an upload."""
         self.captain.overwrite(items)
-        self.parameters.set(MISSION_TOTAL, len(items))
-        self.broadcast(self.parameters.message(MISSION_TOTAL, index=0xFFFF))
+        if len(items) != self.parameters[MISSION_TOTAL]:
+            self.parameters.set(MISSION_TOTAL, len(items))
+            self.broadcast(self.parameters.message(MISSION_TOTAL, index=0xFFFF))
         if complete:
             self._say(Say.RECEIVED)
 

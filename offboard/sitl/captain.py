@@ -178,7 +178,7 @@ class Captain:
         same = bool(items) and tuple(items) == self.items
         self.items = tuple(items)
         self._feasible = self._can_fly(items)
-        if same and not self._complete:
+        if same and self._feasible and not self._complete:
             return
         self._complete = False
         self.flight.plan = self._plan()

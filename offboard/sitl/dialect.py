@@ -55,7 +55,7 @@ class Extended:
         self._message = message
         self._extension = struct.pack(f"<{len(extension)}I", *extension)
 
-    def pack(self, mav: Any) -> bytes:
+    def pack(self, mav: mavlink.MAVLink) -> bytes:
         """The frame."""
         message = self._message
         fields = [getattr(message, name) for name in message.ordered_fieldnames]

@@ -139,12 +139,17 @@ class WireItem:
             return wrong
         if self.frame not in GLOBAL_FRAMES:
             return int(mavlink.MAV_MISSION_UNSUPPORTED_FRAME)
-        if not abs(self.x) <= 90e7:
-            return int(mavlink.MAV_MISSION_INVALID_PARAM5_X)
-        if not abs(self.y) <= 180e7:
-            return int(mavlink.MAV_MISSION_INVALID_PARAM6_Y)
-        if not abs(self.z) <= HIGHEST:  # also refuses NaN
-            return int(mavlink.MAV_MISSION_INVALID_PARAM7)
+        return self._place_problem()
+
+    def _place_problem(self) -> int | None:
+        """What is wrong with the place; comparisons also refuse NaN."""
+        for value, limit, wrong in (
+            (self.x, 90e7, mavlink.MAV_MISSION_INVALID_PARAM5_X),
+            (self.y, 180e7, mavlink.MAV_MISSION_INVALID_PARAM6_Y),
+            (self.z, HIGHEST, mavlink.MAV_MISSION_INVALID_PARAM7),
+        ):
+            if not abs(value) <= limit:
+                return int(wrong)
         return None
 
     def _parameter_problem(self, nan_allowed: bool) -> int | None:

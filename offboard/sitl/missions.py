@@ -73,7 +73,7 @@ class MissionProtocol:
     def __init__(
         self, flavour: Flavour, owner: Owner, send: Callable[[int, Message], None], retry: float
     ) -> None:
-        self.lists: dict[int, tuple[WireItem, ...]] = {kind: () for kind in TYPES}
+        self.lists: dict[int, tuple[WireItem, ...]] = dict.fromkeys(TYPES, ())
         self._flavour = flavour
         self._owner = owner
         self._send = send

@@ -29,7 +29,7 @@ class Parameters:
     changes : mapping
         Values other than the table's.
     bytewise : bool
-        Integers travel as the bytes of an integer in the place of a float (PX4), not as its value (ArduPilot).
+        Integers travel as their bytes in the place of a float's (PX4), not as floats (ArduPilot).
 
     Raises
     ------

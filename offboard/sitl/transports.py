@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import socket
 import time
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Protocol
 
 from offboard.errors import LinkError
@@ -22,13 +22,13 @@ Address = tuple[str, int]
 class Transport(Protocol):
     """Carries bytes between an autopilot and any number of peers."""
 
-    def receive(self) -> list[tuple[Hashable, bytes]]:
+    def receive(self) -> list[tuple[Address, bytes]]:
         """What has come in, with who sent it; does not wait."""
 
-    def send(self, peer: Hashable, frames: Sequence[bytes]) -> None:
+    def send(self, peer: Address, frames: Sequence[bytes]) -> None:
         """Send frames to a peer; what cannot be sent is lost."""
 
-    def peers(self) -> Iterable[Hashable]:
+    def peers(self) -> Iterable[Address]:
         """Everyone who is to be sent to."""
 
     def sockets(self) -> list[socket.socket]:
@@ -70,9 +70,9 @@ class Udp:
         self._socket.setblocking(False)
         self.port: int = self._socket.getsockname()[1]
 
-    def receive(self) -> list[tuple[Hashable, bytes]]:
+    def receive(self) -> list[tuple[Address, bytes]]:
         """All datagrams that have come in."""
-        found: list[tuple[Hashable, bytes]] = []
+        found: list[tuple[Address, bytes]] = []
         while True:
             try:
                 data, address = self._socket.recvfrom(BLOCK)
@@ -83,13 +83,13 @@ class Udp:
             self._heard[address] = time.monotonic()
             found.append((address, data))
 
-    def send(self, peer: Hashable, frames: Sequence[bytes]) -> None:
+    def send(self, peer: Address, frames: Sequence[bytes]) -> None:
         """One datagram per frame, so that what gets lost is one frame."""
         for frame in frames:
             with contextlib.suppress(OSError):
-                self._socket.sendto(frame, peer)  # type: ignore[arg-type]
+                self._socket.sendto(frame, peer)
 
-    def peers(self) -> Iterable[Hashable]:
+    def peers(self) -> Iterable[Address]:
         """The targets, and who has been heard of lately."""
         oldest = time.monotonic() - SILENCE
         for address in [a for a, heard in self._heard.items() if heard < oldest]:
@@ -134,7 +134,7 @@ class TcpServer:
         self._socket.setblocking(False)
         self.port: int = self._socket.getsockname()[1]
 
-    def receive(self) -> list[tuple[Hashable, bytes]]:
+    def receive(self) -> list[tuple[Address, bytes]]:
         """What the clients have sent; new ones are let in, gone ones forgotten."""
         with contextlib.suppress(BlockingIOError, InterruptedError):
             while True:
@@ -142,7 +142,7 @@ class TcpServer:
                 client.setblocking(False)
                 client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
                 self._clients[address] = client
-        found: list[tuple[Hashable, bytes]] = []
+        found: list[tuple[Address, bytes]] = []
         for address, client in list(self._clients.items()):
             try:
                 data = client.recv(BLOCK)
@@ -156,9 +156,9 @@ class TcpServer:
                 self._drop(address)
         return found
 
-    def send(self, peer: Hashable, frames: Sequence[bytes]) -> None:
+    def send(self, peer: Address, frames: Sequence[bytes]) -> None:
         """Send all frames, or drop a client that does not read them."""
-        client = self._clients.get(peer)  # type: ignore[call-overload]
+        client = self._clients.get(peer)
         if client is None:
             return
         data = b"".join(frames)
@@ -168,7 +168,7 @@ class TcpServer:
         except OSError:
             self._drop(peer)
 
-    def peers(self) -> Iterable[Hashable]:
+    def peers(self) -> Iterable[Address]:
         """The clients."""
         return tuple(self._clients)
 
@@ -182,8 +182,8 @@ class TcpServer:
             self._drop(address)
         self._socket.close()
 
-    def _drop(self, address: Hashable) -> None:
-        self._clients.pop(address).close()  # type: ignore[call-overload]
+    def _drop(self, address: Address) -> None:
+        self._clients.pop(address).close()
 
 
 class Exchange:
@@ -200,7 +200,8 @@ class Exchange:
     def __init__(self, autopilot: Autopilot, transports: Sequence[Transport]) -> None:
         self.autopilot = autopilot
         self._transports = tuple(transports)
-        self._links: dict[tuple[int, Hashable], int] = {}
+        self._links: dict[tuple[int, Address], int] = {}
+        self._speakers: set[tuple[int, Address]] = set()
         self._count = 0
 
     def receive(self) -> None:
@@ -208,6 +209,7 @@ class Exchange:
         for number, transport in enumerate(self._transports):
             for peer, data in transport.receive():
                 self.autopilot.feed(data, self._link(number, peer))
+                self._speakers.add((number, peer))
         self.send()
 
     def send(self) -> None:
@@ -221,6 +223,7 @@ class Exchange:
                     transport.send(peer, frames)
         for key in [key for key in self._links if key not in present]:
             self.autopilot.close(self._links.pop(key))
+            self._speakers.discard(key)
 
     def sockets(self) -> list[socket.socket]:
         """What to wait on."""
@@ -231,11 +234,12 @@ class Exchange:
         for transport in self._transports:
             transport.close()
 
-    def __len__(self) -> int:
-        """How many peers there are."""
-        return len(self._links)
+    @property
+    def heard(self) -> int:
+        """How many peers have said anything."""
+        return len(self._speakers & self._links.keys())
 
-    def _link(self, number: int, peer: Hashable) -> int:
+    def _link(self, number: int, peer: Address) -> int:
         key = (number, peer)
         if key not in self._links:
             self._count += 1

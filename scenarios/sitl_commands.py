@@ -1,0 +1,143 @@
+"""`sidestep sitl`: a simulated MAVLink autopilot to connect to."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from offboard.sitl.transports import Exchange
+    from scenarios.sitl_run import Ports
+    from scenarios.sitl_world import SitlWorld
+
+OK, BAD_INPUT, BROKEN, INTERRUPTED = 0, 2, 3, 130
+MOST_VEHICLES = 20
+GROUND_SCENARIO = "clear"
+"""Gives home where no scenario is named."""
+
+
+def sitl(
+    scenario: Annotated[
+        str | None,
+        typer.Argument(
+            help="Name from `sidestep list`, or a .toml file; without one, at home on the ground."
+        ),
+    ] = None,
+    *,
+    port: Annotated[
+        int, typer.Option(min=1, max=65535, help="UDP port that the first vehicle sends to.")
+    ] = 14540,
+    host: Annotated[str, typer.Option(help="Host that is sent to.")] = "127.0.0.1",
+    speed: Annotated[float, typer.Option(min=0.01, max=1000.0, help="Times real time.")] = 1.0,
+    autopilot: Annotated[str, typer.Option(help="Whose behaviour: px4 or ardupilot.")] = "px4",
+    vehicles: Annotated[
+        int, typer.Option(min=1, max=MOST_VEHICLES, help="How many, each with its own ports and system ID.")
+    ] = 1,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="Of the world; the scenario's own if not given.")
+    ] = None,
+    parameters: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="NAME=VALUE", help="Autopilot parameter; may be repeated."),
+    ] = None,
+    once: Annotated[
+        bool, typer.Option("--once", help="End when every vehicle has flown its mission to its end.")
+    ] = False,
+) -> None:
+    """Put a MAVLink autopilot in front of the aircraft model, for ground stations and programs to connect to.
+
+    With a scenario each vehicle waits in the air where its mission begins, until it is armed; its radar's
+    returns go out as OBSTACLE_DISTANCE_3D, traffic as ADSB_VEHICLE. Runs until Ctrl-C.
+
+    Exit codes: 0 mission ended (--once); 2 bad input; 3 the aircraft model or a link failed; 130 interrupted.
+    """
+    from avoidance.parameters import PRESETS  # noqa: PLC0415
+    from offboard.sitl.autopilot import FLAVOURS  # noqa: PLC0415
+    from scenarios import run  # noqa: PLC0415
+    from scenarios.errors import ScenarioError  # noqa: PLC0415
+    from scenarios.load import load  # noqa: PLC0415
+    from scenarios.sitl_run import connect  # noqa: PLC0415
+    from scenarios.sitl_world import SitlWorld, fleet_of  # noqa: PLC0415
+
+    with _errors(), contextlib.ExitStack() as stack:
+        if autopilot not in FLAVOURS:
+            known = ", ".join(FLAVOURS)
+            raise ScenarioError("--autopilot", f"{autopilot!r} is unknown; known: {known}")
+        on_ground = scenario is None
+        chosen = load(scenario or GROUND_SCENARIO)
+        chosen = run.prepare(chosen, chosen.seed if seed is None else seed)
+        members = fleet_of(chosen, vehicles, on_ground=on_ground)
+        try:
+            world = SitlWorld(
+                chosen,
+                PRESETS[chosen.preset],
+                FLAVOURS[autopilot],
+                members,
+                on_ground=on_ground,
+                retry=0.2 * max(speed, 1.0),
+                settings=_settings(parameters or []),
+            )
+        except ValueError as error:
+            raise ScenarioError("--set", str(error)) from error
+        stack.enter_context(world)
+        exchanges, ports = [], []
+        for number, each in enumerate(world.autopilots.values()):
+            exchange, its_ports = connect(each, number, port, host)
+            stack.callback(exchange.close)
+            exchanges.append(exchange)
+            ports.append(its_ports)
+        code = _run(world, exchanges, ports, speed, once)
+    raise typer.Exit(code)
+
+
+def _run(
+    world: SitlWorld, exchanges: Sequence[Exchange], ports: Sequence[Ports], speed: float, once: bool
+) -> int:
+    """Serve with a line of status; the exit code."""
+    from scenarios.sitl_run import serve  # noqa: PLC0415
+    from scenarios.sitl_show import StatusLine, greeting  # noqa: PLC0415
+
+    greeting(world, ports, speed)
+    with StatusLine(world, exchanges) as status:
+        try:
+            serve(world, exchanges, speed, status.update, lambda: once and world.over)
+        except KeyboardInterrupt:
+            return INTERRUPTED
+    return OK
+
+
+def _settings(texts: Sequence[str]) -> dict[str, float]:
+    """Parameters as given on the command line."""
+    from scenarios.errors import ScenarioError  # noqa: PLC0415
+
+    found = {}
+    for text in texts:
+        name, _, value = text.partition("=")
+        try:
+            found[name.strip()] = float(value)
+        except ValueError as error:
+            message = f"{text!r} must be a name and a number, such as NAV_LOITER_RAD=100"
+            raise ScenarioError("--set", message) from error
+    return found
+
+
+@contextlib.contextmanager
+def _errors() -> Iterator[None]:
+    """Expected errors become one message on stderr and an exit code."""
+    from fmu.errors import FmuError  # noqa: PLC0415
+    from offboard.errors import OffboardError  # noqa: PLC0415
+    from scenarios.errors import ScenarioError  # noqa: PLC0415
+
+    try:
+        yield
+    except ScenarioError as error:
+        typer.echo(f"sidestep: {error}", err=True)
+        raise typer.Exit(BAD_INPUT) from error
+    except (FmuError, OffboardError) as error:
+        typer.echo(f"sidestep: {error}", err=True)
+        raise typer.Exit(BROKEN) from error
+    except KeyboardInterrupt as error:
+        raise typer.Exit(INTERRUPTED) from error
