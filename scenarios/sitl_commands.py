@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+from scenarios.command_errors import INTERRUPTED, OK, expected_errors
 
 if TYPE_CHECKING:
     from offboard.sitl.transports import Exchange
     from scenarios.sitl_run import Ports
     from scenarios.sitl_world import SitlWorld
 
-OK, BAD_INPUT, BROKEN, INTERRUPTED = 0, 2, 3, 130
 MOST_VEHICLES = 20
 GROUND_SCENARIO = "clear"
 """Gives home where no scenario is named."""
@@ -62,7 +63,7 @@ def sitl(
     from scenarios.sitl_run import connect  # noqa: PLC0415
     from scenarios.sitl_world import SitlWorld, fleet_of  # noqa: PLC0415
 
-    with _errors(), contextlib.ExitStack() as stack:
+    with expected_errors("nothing was flown"), contextlib.ExitStack() as stack:
         if autopilot not in FLAVOURS:
             known = ", ".join(FLAVOURS)
             raise ScenarioError("--autopilot", f"{autopilot!r} is unknown; known: {known}")
@@ -122,22 +123,3 @@ def _settings(texts: Sequence[str]) -> dict[str, float]:
             message = f"{text!r} must be a name and a number, such as NAV_LOITER_RAD=100"
             raise ScenarioError("--set", message) from error
     return found
-
-
-@contextlib.contextmanager
-def _errors() -> Iterator[None]:
-    """Expected errors become one message on stderr and an exit code."""
-    from fmu.errors import FmuError  # noqa: PLC0415
-    from offboard.errors import OffboardError  # noqa: PLC0415
-    from scenarios.errors import ScenarioError  # noqa: PLC0415
-
-    try:
-        yield
-    except ScenarioError as error:
-        typer.echo(f"sidestep: {error}", err=True)
-        raise typer.Exit(BAD_INPUT) from error
-    except (FmuError, OffboardError) as error:
-        typer.echo(f"sidestep: {error}", err=True)
-        raise typer.Exit(BROKEN) from error
-    except KeyboardInterrupt as error:
-        raise typer.Exit(INTERRUPTED) from error
