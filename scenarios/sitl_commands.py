@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -11,6 +12,7 @@ import typer
 from scenarios.command_errors import INTERRUPTED, OK, expected_errors
 
 if TYPE_CHECKING:
+    from offboard.sitl.faulty import Faults
     from offboard.sitl.transports import Exchange
     from scenarios.sitl_run import Ports
     from scenarios.sitl_world import SitlWorld
@@ -44,6 +46,24 @@ def sitl(
         list[str] | None,
         typer.Option("--set", metavar="NAME=VALUE", help="Autopilot parameter; may be repeated."),
     ] = None,
+    signing_key: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Sign all frames and drop what is not signed (MAVLink 2 signing)."),
+    ] = None,
+    loss: Annotated[
+        float, typer.Option(min=0.0, max=1.0, help="Share of frames that the UDP link loses, either way.")
+    ] = 0.0,
+    duplicate: Annotated[
+        float, typer.Option(min=0.0, max=1.0, help="Share of frames that come twice.")
+    ] = 0.0,
+    delay: Annotated[
+        str | None,
+        typer.Option(metavar="MIN,MAX", help="Each frame is late by so much [s], and overtakes others."),
+    ] = None,
+    outage: Annotated[
+        str | None,
+        typer.Option(metavar="FROM,TO", help="Nothing comes through between these times [s of wall clock]."),
+    ] = None,
     once: Annotated[
         bool, typer.Option("--once", help="End when every vehicle has flown its mission to its end.")
     ] = False,
@@ -56,6 +76,7 @@ def sitl(
     Exit codes: 0 mission ended (--once); 2 bad input; 3 the aircraft model or a link failed; 130 interrupted.
     """
     from avoidance.parameters import PRESETS  # noqa: PLC0415
+    from offboard.signing import load_key  # noqa: PLC0415
     from offboard.sitl.autopilot import FLAVOURS  # noqa: PLC0415
     from scenarios import run  # noqa: PLC0415
     from scenarios.errors import ScenarioError  # noqa: PLC0415
@@ -67,6 +88,7 @@ def sitl(
         if autopilot not in FLAVOURS:
             known = ", ".join(FLAVOURS)
             raise ScenarioError("--autopilot", f"{autopilot!r} is unknown; known: {known}")
+        faults = _faults(loss, duplicate, delay, outage)
         on_ground = scenario is None
         chosen = load(scenario or GROUND_SCENARIO)
         chosen = run.prepare(chosen, chosen.seed if seed is None else seed)
@@ -80,13 +102,14 @@ def sitl(
                 on_ground=on_ground,
                 retry=0.2 * max(speed, 1.0),
                 settings=_settings(parameters or []),
+                signing_key=None if signing_key is None else load_key(signing_key),
             )
         except ValueError as error:
             raise ScenarioError("--set", str(error)) from error
         stack.enter_context(world)
         exchanges, ports = [], []
         for number, each in enumerate(world.autopilots.values()):
-            exchange, its_ports = connect(each, number, port, host)
+            exchange, its_ports = connect(each, number, port, host, faults)
             stack.callback(exchange.close)
             exchanges.append(exchange)
             ports.append(its_ports)
@@ -123,3 +146,26 @@ def _settings(texts: Sequence[str]) -> dict[str, float]:
             message = f"{text!r} must be a name and a number, such as NAV_LOITER_RAD=100"
             raise ScenarioError("--set", message) from error
     return found
+
+
+def _faults(loss: float, duplicate: float, delay: str | None, outage: str | None) -> Faults | None:
+    """How bad the link is; None if it is good."""
+    from offboard.sitl.faulty import Faults  # noqa: PLC0415
+
+    if not (loss or duplicate or delay or outage):
+        return None
+    outages = (_span("--outage", outage),) if outage else ()
+    return Faults(loss, duplicate, _span("--delay", delay) if delay else (0.0, 0.0), outages)
+
+
+def _span(option: str, text: str) -> tuple[float, float]:
+    """Two numbers with a comma, the lesser first."""
+    from scenarios.errors import ScenarioError  # noqa: PLC0415
+
+    try:
+        low, high = (float(part) for part in text.split(","))
+    except ValueError as error:
+        raise ScenarioError(option, f"{text!r} must be two numbers with a comma, such as 0.5,3") from error
+    if not 0.0 <= low <= high < float("inf"):
+        raise ScenarioError(option, f"{text!r} must be two numbers from 0 on, the lesser first")
+    return low, high

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from offboard.errors import LinkError
+from offboard.sitl.faulty import Faults, FaultyTransport
 from offboard.sitl.transports import Exchange, TcpServer, Transport, Udp
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ class Ports:
 
 
 def connect(
-    autopilot: Autopilot, number: int, port: int, host: str, *, ground: bool = True
+    autopilot: Autopilot, number: int, port: int, host: str, faults: Faults | None = None
 ) -> tuple[Exchange, Ports]:
     """Give vehicle `number` (from 0) its ports: one system, one set of ports.
 
@@ -54,8 +55,8 @@ def connect(
         UDP port that the first vehicle sends to.
     host : str
         Where to.
-    ground : bool
-        Send to a ground station on the usual port as well.
+    faults : Faults, optional
+        How bad the UDP link is; TCP has none of them.
 
     Raises
     ------
@@ -63,12 +64,13 @@ def connect(
         If no port can be had at all.
     """
     own = "127.0.0.1" if host in ("127.0.0.1", "localhost") else "0.0.0.0"
-    targets = [(host, port + number)] + ([(host, GROUND_PORT)] if ground else [])
+    targets = [(host, port + number), (host, GROUND_PORT)]
     try:
         udp = Udp(UDP_PORT + number, targets, own)
     except LinkError:
         udp = Udp(0, targets, own)
-    transports: list[Transport] = [udp]
+    bad = None if faults is None else FaultyTransport(udp, faults, number, time.monotonic)
+    transports: list[Transport] = [bad or udp]
     tcp: TcpServer | None = None
     try:
         tcp = TcpServer(TCP_PORT + 10 * number, own)

@@ -69,6 +69,8 @@ class SitlWorld:
         Time until a mission item is asked for again [s of simulated time].
     settings : mapping, optional
         Autopilot parameters.
+    signing_key : bytes, optional
+        Key with which all frames must be signed.
     """
 
     def __init__(
@@ -81,14 +83,22 @@ class SitlWorld:
         on_ground: bool = False,
         retry: float = 0.2,
         settings: Mapping[str, float] | None = None,
+        signing_key: bytes | None = None,
     ) -> None:
         self.scenario = scenario
         self._hangar = Hangar(scenario, parameters)
-        self.autopilots: dict[str, Autopilot] = {}
-        for number, member in enumerate(members, start=1):
-            self.autopilots[member.name] = self._autopilot(
-                member, number, flavour, on_ground, retry, settings or {}
-            )
+        self._on_ground = on_ground
+        common = Settings(
+            flavour=flavour,
+            parameters=_usual(flavour, on_ground) | dict(settings or {}),
+            start_time=scenario.start_time_utc.timestamp(),
+            retry=retry,
+            signing_key=signing_key,
+        )
+        self.autopilots = {
+            member.name: self._autopilot(member, replace(common, system_id=number))
+            for number, member in enumerate(members, start=1)
+        }
         ids = {member.name: member.id for member in members}
         self._traffic = self._hangar.traffic()
         self.world = World(scenario.obstacles, self.autopilots, self._traffic, ids)
@@ -134,15 +144,8 @@ class SitlWorld:
         for autopilot in self.autopilots.values():
             autopilot.tick()
 
-    def _autopilot(
-        self,
-        member: Member,
-        number: int,
-        flavour: Flavour,
-        on_ground: bool,
-        retry: float,
-        settings: Mapping[str, float],
-    ) -> Autopilot:
+    def _autopilot(self, member: Member, settings: Settings) -> Autopilot:
+        on_ground = self._on_ground
         plant, performance = self._hangar.own_plant(member.mission, on_ground=on_ground)
         wind = self.scenario.wind
         aircraft = Aircraft(
@@ -153,17 +156,7 @@ class SitlWorld:
             charge=lambda: plant.get("battery.state_of_charge"),
             wind=(wind.north, wind.east),
         )
-        usual = {} if on_ground or LANDING_WANTED not in flavour.parameters else {LANDING_WANTED: 0.0}
-        autopilot = Autopilot(
-            aircraft,
-            Settings(
-                flavour=flavour,
-                system_id=number,
-                parameters=usual | dict(settings),
-                start_time=self.scenario.start_time_utc.timestamp(),
-                retry=retry,
-            ),
-        )
+        autopilot = Autopilot(aircraft, settings)
         if not on_ground:
             autopilot.load_mission(wire_mission(member.mission, self._hangar.frame))
         return autopilot
@@ -211,6 +204,11 @@ class SitlWorld:
             [0.0] * 3 if before is None else [(a - b) / period for a, b in zip(here, before, strict=True)]
         )
         return Report(mover.id, *here, *velocity)
+
+
+def _usual(flavour: Flavour, on_ground: bool) -> dict[str, float]:
+    """Parameters that go with where the flight begins: a scenario's mission has no landing."""
+    return {} if on_ground or LANDING_WANTED not in flavour.parameters else {LANDING_WANTED: 0.0}
 
 
 def fleet_of(scenario: Scenario, count: int, *, on_ground: bool) -> tuple[Member, ...]:

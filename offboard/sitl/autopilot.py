@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from offboard.framing import Framer
 from offboard.link import VehicleState
+from offboard.signing import Sender, SigningPipe
 from offboard.sitl.aircraft import Aircraft
 from offboard.sitl.ardupilot import ARDUPILOT, MISSION_TOTAL
 from offboard.sitl.captain import Captain
 from offboard.sitl.commands import Command, Commands
-from offboard.sitl.dialect import Codec, Message, mavlink
+from offboard.sitl.dialect import Codec, Message, Packed, mavlink
 from offboard.sitl.flavour import Flavour, Role, Say
 from offboard.sitl.items import WireItem
 from offboard.sitl.missions import MISSION, MissionProtocol
@@ -41,22 +43,37 @@ class Settings:
     """Time until a mission item is asked for again [s]; faster than real time this is simulated time."""
     warm_up: float = 0.0
     """It cannot be armed for so long after it was switched on [s]."""
+    signing_key: bytes | None = None
+    """Secret key: frames that are not signed with it are dropped, its own are signed."""
+    signing_clock: Callable[[], float] = time.time
+    """Unix time for signatures [s]: true time, however fast the simulation is."""
 
 
 class _Link:
     """One way to the outside: its own frame numbers, streams and left-over bytes."""
 
-    def __init__(self, system_id: int) -> None:
+    def __init__(self, system_id: int, pipe: SigningPipe | None) -> None:
         self.codec = Codec(system_id)
-        self.framer = Framer(self.codec.decode)
         self.streams = Streams()
         self.out: list[bytes] = []
+        self._framer = Framer(self.codec.decode)
+        self._pipe = pipe
+
+    def messages(self, data: bytes) -> list[Message]:
+        """What has come in."""
+        return self._framer.feed(data if self._pipe is None else self._pipe.verify(data))
+
+    def put(self, packed: Packed) -> None:
+        """Keep a message for the next time that somebody asks for what is to be sent."""
+        frame = self.codec.stamp(packed)
+        self.out.append(frame if self._pipe is None else self._pipe.sign(frame))
+        del self.out[:-LONGEST_QUEUE]
 
 
 class Autopilot:
     """A MAVLink autopilot that flies an aircraft; it knows no transport and no clock.
 
-    Whoever owns time calls `step`, or `aircraft.advance` and then `tick`; whoever owns the transport
+    Whoever owns time calls `step`, or `advance` and then `tick`; whoever owns the transport
     calls `feed` and `flush`, with a number of its own for each peer.
 
     Parameters
@@ -85,6 +102,7 @@ class Autopilot:
         self.captain = Captain(aircraft, self.flavour, self.parameters, self._say, self._item_reached)
         self.telemetry = Telemetry(self.captain, self.settings.start_time)
         self._links: dict[int, _Link] = {}
+        self._heard: dict[Sender, int] = {}
         self._missions = MissionProtocol(self.flavour, self, self._send, self.settings.retry)
         self._commands = Commands(self.captain, self, self._say)
         self._text_id = 0
@@ -110,7 +128,7 @@ class Autopilot:
 
     def feed(self, data: bytes, link: int = 0) -> None:
         """Bytes that have come in on a link, whole frames or not, garbage or not."""
-        messages = self._link(link).framer.feed(data)
+        messages = self._link(link).messages(data)
         for message in messages:
             self._handle(link, message)
         if messages:
@@ -119,23 +137,23 @@ class Autopilot:
 
     def step(self, duration: float) -> None:
         """Let `duration` seconds pass: fly, then tell of it."""
-        self.aircraft.advance(duration)
+        self.advance(duration)
         self.tick()
 
     def tick(self) -> None:
-        """What is to be done and told at the present instant, after the aircraft has moved on."""
+        """What is to be told at the present instant, after the aircraft has moved on."""
         now = self.aircraft.clock
-        self.captain.step()
         self._missions.step(now)
         self._tell_changes()
         self._repeat_reached(now)
-        made: dict[int, Message | None] = {}
+        made: dict[int, Packed | None] = {}
         for link in self._links.values():
             for message_id in link.streams.due(now):
                 if message_id not in made:
-                    made[message_id] = self.telemetry.message(message_id)
-                if (message := made[message_id]) is not None:
-                    link.out.append(link.codec.pack(message))
+                    message = self.telemetry.message(message_id)
+                    made[message_id] = None if message is None else link.codec.prepare(message)
+                if (packed := made[message_id]) is not None:
+                    link.put(packed)
 
     def flush(self, link: int = 0) -> bytes:
         """What is to be sent on a link."""
@@ -157,9 +175,10 @@ class Autopilot:
 
     def broadcast(self, message: Message) -> None:
         """Send a message on every link."""
+        packed = None
         for link in self._links.values():
-            link.out.append(link.codec.pack(message))
-            del link.out[:-LONGEST_QUEUE]
+            packed = packed or link.codec.prepare(message)
+            link.put(packed)
 
     def load_mission(self, items: Sequence[WireItem]) -> None:
         """Put a mission in the memory, as if it had been there at power-on; home goes in by itself."""
@@ -277,12 +296,15 @@ class Autopilot:
 
     def _link(self, link: int) -> _Link:
         if link not in self._links:
-            self._links[link] = _Link(self.settings.system_id)
+            key, pipe = self.settings.signing_key, None
+            if key is not None:
+                pipe = SigningPipe(key, self.settings.signing_clock, link & 0xFF, self._heard)
+            self._links[link] = _Link(self.settings.system_id, pipe)
         return self._links[link]
 
     def _send(self, link: int, message: Message) -> None:
         state = self._link(link)
-        state.out.append(state.codec.pack(message))
+        state.put(state.codec.prepare(message))
 
     def _handle(self, link: int, message: Message) -> None:
         """Do what a message asks, if it is for us and not from someone who pretends to be us."""

@@ -63,6 +63,12 @@ class Plan:
     legs: tuple[Leg, ...] = ()
     jumps: Mapping[int, tuple[int, int]] = field(default_factory=dict)
     """Index of a leg after which a jump follows: to which seq, and how often (-1 for ever)."""
+    targets: tuple[Target, ...] = field(init=False)
+    """The legs as sequencing sees them."""
+
+    def __post_init__(self) -> None:
+        """Take the targets out of the legs."""
+        object.__setattr__(self, "targets", tuple(leg.target for leg in self.legs))
 
     @classmethod
     def of(cls, items: Sequence[WireItem], first: int, frame: MapFrame, defaults: Defaults) -> Plan:
@@ -80,11 +86,6 @@ class Plan:
             elif item.command in PLACES or item.command == mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH:
                 legs.append(_leg(seq, item, legs, frame, airspeed, defaults))
         return cls(tuple(legs), jumps)
-
-    @property
-    def targets(self) -> tuple[Target, ...]:
-        """The legs as sequencing sees them."""
-        return tuple(leg.target for leg in self.legs)
 
     def index_of(self, seq: int) -> int:
         """The first leg that item `seq` or one behind it stands for; the number of legs if none does."""
