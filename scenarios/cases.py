@@ -11,7 +11,7 @@ import numpy as np
 
 from scenarios.encounters import encounter
 from scenarios.load import load
-from scenarios.scenario import Fidelity, RadarSettings, RandomField, Scenario, Wind, scatter
+from scenarios.scenario import Fidelity, RadarSettings, RandomField, Scenario, Turbulence, Wind, scatter
 
 if TYPE_CHECKING:
     from avoidance.parameters import Parameters
@@ -24,6 +24,7 @@ MIXED_RADII = (300.0, 2000.0)
 """Safety radii of mixed fields [m]."""
 MIXED_WIND = 8.0
 """Wind of mixed fields, from anywhere [m/s]."""
+MIXED_TURBULENCE: Turbulence = "moderate"
 NOISE = RadarSettings(range_noise=50.0, bearing_noise=math.radians(1.0), detection_probability=0.9)
 """The noisy radar."""
 
@@ -100,7 +101,9 @@ def _mixed(count: int, rng: np.random.Generator, _fidelity: Fidelity) -> Scenari
     field = RandomField(count, safety_radius=least, largest_safety_radius=largest)
     scenario = scatter(replace(load(FIELD), random=field), rng)
     angle = rng.uniform(-math.pi, math.pi)
-    wind = Wind(round(MIXED_WIND * math.cos(angle), 3), round(MIXED_WIND * math.sin(angle), 3))
+    wind = Wind(
+        round(MIXED_WIND * math.cos(angle), 3), round(MIXED_WIND * math.sin(angle), 3), MIXED_TURBULENCE
+    )
     return replace(scenario, wind=wind)
 
 
@@ -115,7 +118,7 @@ def _noise(count: int, rng: np.random.Generator, fidelity: Fidelity) -> Scenario
 KINDS: dict[str, Kind] = {
     "static": Kind(0, "obstacles of 1 km scattered about the waypoints", False, (10, 40, 70, 100), _static),
     "moving": Kind(1, "intruders at constant velocity, each would pass within 1 km", True, (1,), _moving),
-    "mixed": Kind(2, "obstacles of 0.3 to 2 km, 8 m/s of wind", False, (10, 40, 70, 100), _mixed),
+    "mixed": Kind(2, "obstacles of 0.3 to 2 km, 8 m/s of gusty wind", False, (10, 40, 70, 100), _mixed),
     "noise": Kind(3, "intruders seen by a radar with noise and missed scans", True, (1,), _noise),
 }
 """Kinds of worlds by name."""

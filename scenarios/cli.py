@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import json
-import math
 import signal
 import sys
 from collections.abc import Iterator
@@ -86,6 +85,9 @@ def fly(
         str | None,
         typer.Option(metavar="N,E", help="Steady wind towards north and east [m/s], such as 3,-4."),
     ] = None,
+    turbulence: Annotated[
+        str | None, typer.Option(help="none, light, moderate or severe; the scenario's own if not given.")
+    ] = None,
     obstacles: Annotated[
         int | None,
         typer.Option(metavar="N", min=0, max=100_000, help="How many obstacles 'random' draws."),
@@ -108,11 +110,9 @@ def fly(
     from dataclasses import replace  # noqa: PLC0415
 
     from scenarios import run  # noqa: PLC0415
-    from scenarios.check import wind_problems  # noqa: PLC0415
-    from scenarios.errors import ScenarioError  # noqa: PLC0415
+    from scenarios.fly_options import changed  # noqa: PLC0415
     from scenarios.load import load  # noqa: PLC0415
     from scenarios.planners import planned_by  # noqa: PLC0415
-    from scenarios.scenario import FIDELITIES, Wind  # noqa: PLC0415
     from scenarios.target import check_target, free_directory  # noqa: PLC0415
 
     with expected_errors():
@@ -121,15 +121,7 @@ def fly(
         chosen = load(scenario)
         seed = chosen.seed if seed is None else seed
         parameters = planned_by(run.preset(preset or chosen.preset), planner or chosen.planner)
-        if wind is not None:
-            chosen = replace(chosen, wind=Wind(*_two_numbers(wind)))
-            if problems := wind_problems(chosen):
-                raise ScenarioError("--wind", problems)
-        if fidelity is not None:
-            if fidelity not in FIDELITIES:
-                known = ", ".join(FIDELITIES)
-                raise ScenarioError("--fidelity", f"{fidelity!r} is unknown; known: {known}")
-            chosen = replace(chosen, vehicle=replace(chosen.vehicle, fidelity=FIDELITIES[fidelity]))
+        chosen = changed(chosen, wind=wind, turbulence=turbulence, fidelity=fidelity)
         chosen = replace(chosen, seed=seed, preset=parameters.name, planner=parameters.optimiser)
         chosen = run.prepare(chosen, seed, obstacles=obstacles)
         directory = output or free_directory(chosen, seed)
@@ -256,18 +248,6 @@ def _fly_and_write(
     if flown.ending == "interrupted":
         return INTERRUPTED
     return OK if judged.safe else UNSAFE
-
-
-def _two_numbers(text: str) -> tuple[float, float]:
-    from scenarios.errors import ScenarioError  # noqa: PLC0415
-
-    try:
-        north, east = (float(part) for part in text.split(","))
-    except ValueError as error:
-        raise ScenarioError("--wind", f"{text!r} must be two numbers with a comma, such as 3,-4") from error
-    if not (math.isfinite(north) and math.isfinite(east)):
-        raise ScenarioError("--wind", f"{text!r} must be two finite numbers")
-    return north, east
 
 
 @contextlib.contextmanager

@@ -264,7 +264,7 @@ def _assemble(
             Traffic(i, tuple(points), t.speed_m_s, t.starts_at_s, t.motion, t.violation_radius_m)
             for i, points, t in zip(ids[len(table.obstacles) :], traffic, table.traffic, strict=False)
         ),
-        wind=Wind(table.wind.north_m_s, table.wind.east_m_s),
+        wind=Wind(table.wind.north_m_s, table.wind.east_m_s, table.wind.turbulence),
         radar=_radar(table),
         vehicle=_vehicle(table),
         random=None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
 from html import escape
 from typing import Any
@@ -50,11 +49,12 @@ def _nearest(run: Run) -> str:
 def origin(run: Run) -> str:
     """What was flown, with what."""
     scenario, summary = run.scenario, run.summary
-    wind = math.hypot(scenario.wind.north, scenario.wind.east)
+    wind, gusts = scenario.wind.speed, scenario.wind.turbulence
     parts = [
         f"Scenario “{scenario.name}”" + (f": {scenario.description}" if scenario.description else ""),
         f"{scenario.vehicle.aircraft} ({scenario.vehicle.fidelity}) at {scenario.vehicle.airspeed:g} m/s",
         f"wind {wind:.1f} m/s" if wind else "no wind",
+        *([f"{gusts} turbulence"] if gusts != "none" else []),
         f"preset {_value(summary.get('preset'))}",
         f"seed {_value(summary.get('seed'))}",
         f"Sidestep {_value(summary.get('version'))}",

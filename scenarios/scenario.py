@@ -22,11 +22,19 @@ START_ROOM = 500.0
 LEAST_AIR_MARGIN = 3.0
 """The wind must be slower than the airspeed by at least this [m/s]."""
 
+_AIR = 2**32 - 1
+"""Where the seeds of turbulence branch off those of the flight; `streams` does not get there."""
+
 OWN = "own"
 """Name of a vehicle that flies alone."""
 
 Fidelity = Literal["6dof", "kinematic"]
+Turbulence = Literal["none", "light", "moderate", "severe"]
+WIND_AT_20_FT: dict[Turbulence, float] = {"none": 0.0, "light": 7.72, "moderate": 15.43, "severe": 23.15}
+"""W20, the wind 20 ft above ground that makes turbulence [m/s]: 15, 30 and 45 kt (MIL-F-8785C, 3.7.2.1)."""
 Motion = Literal["6dof", "kinematic", "point"]
+TURBULENCES: dict[str, Turbulence] = {word: word for word in WIND_AT_20_FT}
+"""Intensities of turbulence by the name that users give."""
 FIDELITIES: dict[str, Fidelity] = {"6dof": "6dof", "kinematic": "kinematic"}
 """Equations of motion by the name that users give."""
 
@@ -97,15 +105,25 @@ class Traffic:
 
 @dataclass(frozen=True, slots=True)
 class Wind:
-    """Steady wind: velocity of the air over ground [m/s]."""
+    """Velocity of the air over ground [m/s]: a steady part, and turbulence about it."""
 
     north: float = 0.0
     east: float = 0.0
+    turbulence: Turbulence = "none"
+    """Intensity by MIL-F-8785C; the gusts are seeded by the flight's seed."""
 
     @property
     def speed(self) -> float:
-        """Its magnitude [m/s]."""
+        """Magnitude of the steady part [m/s]."""
         return math.hypot(self.north, self.east)
+
+    @property
+    def gusts(self) -> float:
+        """Two standard deviations of the gusts along one horizontal axis [m/s].
+
+        At 100 m above ground; at 200 m they are a fifth less.
+        """
+        return 2.0 * 0.138 * WIND_AT_20_FT[self.turbulence]
 
 
 @dataclass(frozen=True, slots=True)
@@ -300,6 +318,25 @@ def scatter(scenario: Scenario, rng: np.random.Generator) -> Scenario:
             )
         )
     return replace(scenario, obstacles=scenario.obstacles + tuple(drawn), random=None)
+
+
+def turbulence_seed(seed: int, number: int) -> int:
+    """Seed of the gusts about one aircraft, from that of the flight: each flies in air of its own.
+
+    Parameters
+    ----------
+    seed : int
+        Of the flight.
+    number : int
+        Of the aircraft, own vehicles first.
+
+    Returns
+    -------
+    int
+        Within 0 to 2³¹ − 1; independent of everything that `streams` gives.
+    """
+    children = np.random.SeedSequence(seed, spawn_key=(_AIR, number))
+    return int(children.generate_state(1)[0] >> 1)
 
 
 def streams(seed: int, vehicle: int = 0) -> Mapping[str, np.random.Generator]:

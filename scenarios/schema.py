@@ -92,10 +92,11 @@ class TrafficTable(Table):
 
 
 class WindTable(Table):
-    """Steady wind: where the air moves to, not where it comes from."""
+    """Wind: where the air moves to, not where it comes from; and its turbulence."""
 
     north_m_s: WindComponent = 0.0
     east_m_s: WindComponent = 0.0
+    turbulence: Literal["none", "light", "moderate", "severe"] = "none"
 
 
 class RadarTable(Table):

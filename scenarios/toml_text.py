@@ -32,7 +32,12 @@ def to_toml(scenario: Scenario) -> str:
             longitude_deg=scenario.home.longitude_deg,
             altitude_m=scenario.home.altitude_m,
         ),
-        _table("[wind]", north_m_s=scenario.wind.north, east_m_s=scenario.wind.east),
+        _table(
+            "[wind]",
+            north_m_s=scenario.wind.north,
+            east_m_s=scenario.wind.east,
+            turbulence=scenario.wind.turbulence,
+        ),
         _table(
             "[radar]",
             range_m=radar.range,

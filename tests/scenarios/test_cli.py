@@ -17,6 +17,7 @@ from scenarios import __version__
 from scenarios.cli import app
 from scenarios.hangar import Hangar
 from scenarios.recorded import differences, read_run
+from scenarios.scenario import Wind
 from tests.scenarios.flights import ENCOUNTER
 
 ROOT = Path(__file__).parents[2]
@@ -77,13 +78,13 @@ def test_a_collision_is_exit_code_1(scenario, tmp_path):
 
 
 def test_options_reach_the_flight(scenario, tmp_path):
-    options = ("--seed", 4, "--wind", "-3,4", "--fidelity", "kinematic", "--preset", "paper")
-    done = run("fly", scenario, *options, "--json", "-o", tmp_path / "out")
+    options = ("--seed", 4, "--wind", "-3,4", "--turbulence", "light", "--fidelity", "kinematic")
+    done = run("fly", scenario, *options, "--preset", "paper", "--json", "-o", tmp_path / "out")
     assert done.exit_code == 0
     summary = json.loads(done.stdout)
     assert (summary["seed"], summary["preset"]) == (4, "paper")
     flown = read_run(tmp_path / "out").scenario
-    assert (flown.wind.north, flown.wind.east) == (-3.0, 4.0)
+    assert flown.wind == Wind(-3.0, 4.0, "light")
 
 
 def test_a_mission_within_the_acceptance_radius_is_over_at_once(tmp_path):
@@ -115,6 +116,7 @@ def test_the_default_directory_is_numbered(scenario, tmp_path, monkeypatch):
         (["--wind", "20,20"], "at most 12 m/s"),
         (["--preset", "best"], "known: default, paper"),
         (["--fidelity", "good"], "known: 6dof, kinematic"),
+        (["--turbulence", "strong"], "known: none, light, moderate, severe"),
         (["single", "--obstacles", "4"], "has no [random] table"),
         (["--seed", "-1"], "--seed"),
         (["--obstacles", "-1"], "--obstacles"),

@@ -54,3 +54,33 @@ def test_energy_needs_a_vehicle():
         pytest.raises(ValueError, match="own_vehicle"),
     ):
         hangar.energy()
+
+
+def gust(fidelity, seed, number=0, turbulence="moderate"):
+    """Eastward gust about one of the own vehicles after 60 s."""
+    scenario = parse(ENCOUNTER)
+    wind = replace(scenario.wind, turbulence=turbulence)
+    settings = replace(scenario.vehicle, fidelity=fidelity)
+    with Hangar(replace(scenario, wind=wind, vehicle=settings, seed=seed), preset("default")) as hangar:
+        vehicle = [hangar.own_vehicle() for _ in range(number + 1)][-1]
+        vehicle.plant.step(60.0)
+        return vehicle.plant.get("air.gust_east")
+
+
+@pytest.mark.parametrize("fidelity", ["6dof", "kinematic"])
+def test_gusts_follow_the_seed_and_each_vehicle_has_its_own(fidelity):
+    first = gust(fidelity, 1)
+    assert first != 0.0
+    assert gust(fidelity, 1) == first
+    assert len({first, gust(fidelity, 2), gust(fidelity, 1, number=1)}) == 3
+    assert gust(fidelity, 1, turbulence="none") == 0.0
+
+
+@pytest.mark.parametrize(("guidance", "limit"), [("default", 10.0), ("paper", 65.0)])
+def test_a_vehicle_tells_how_far_gusts_carry_it(guidance, limit):
+    scenario = parse(ENCOUNTER)
+    wind = replace(scenario.wind, turbulence="moderate")
+    with Hangar(replace(scenario, wind=wind), preset(guidance)) as hangar:
+        performance = hangar.own_vehicle().performance
+    assert performance.tracking_error == limit
+    assert performance.wind_bound == pytest.approx(scenario.wind.speed + 4.26, abs=0.01)

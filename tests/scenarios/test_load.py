@@ -68,7 +68,7 @@ def test_everything_survives_writing():
     start_time_utc = 2021-06-01T12:00:00+02:00
     time_limit_s = 5000.0
     obstacles = [{id = 7, latitude_deg = 14.45, longitude_deg = 76.6, kind = "mast", appears_at_s = 30.0}]
-    wind = {north_m_s = 3.0, east_m_s = -4.0}
+    wind = {north_m_s = 3.0, east_m_s = -4.0, turbulence = "light"}
     radar = {range_m = 8000.0, range_noise_m = 50.0, bearing_noise_deg = 1.0, field_of_view_deg = 120.0}
     vehicle = {fidelity = "kinematic", airspeed_m_s = 16.0, acceptance_radius_m = 50.0, heading_deg = 20.0}
     random = {count = 3}
@@ -106,6 +106,7 @@ def test_obstacles_without_altitude_stand_at_the_mission_s():
     [
         ("wind = {north_m_s = nan}", "wind.north_m_s = nan: must be a finite number"),
         ("wind = {north_m_s = 9.0, east_m_s = 9.0}", "allowed are at most 12 m/s"),
+        ('wind = {turbulence = "strong"}', "wind.turbulence = 'strong'"),
         ("bogus = 1", "bogus = 1: unknown key"),
         ("radar = {rang_m = 5.0}", "did you mean range_m?"),
         ("radar = {detection_probability = 0.0}", "greater than 0 and at most 1"),

@@ -59,6 +59,7 @@ def test_mixed_fields_have_all_sizes_wind_and_a_free_start():
     assert 300.0 <= min(radii) < 500.0
     assert 1500.0 < max(radii) <= 2000.0
     assert world.wind.speed == pytest.approx(8.0, abs=0.01)
+    assert world.wind.turbulence == "moderate"
     assert all(o.north**2 + o.east**2 >= (o.safety_radius + 500.0) ** 2 for o in world.obstacles)
 
 
