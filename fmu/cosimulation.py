@@ -13,7 +13,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from fmu.errors import PlantError
+from fmu.errors import PlantError, RefusedError
 
 VERSIONS = ("2.0", "3.0")
 """FMI versions that can be flown."""
@@ -175,7 +175,7 @@ class CoSimulation:
         Raises
         ------
         ValueError
-            If a name is unknown or the FMU refuses a value.
+            If a name is unknown; `RefusedError` if the FMU refuses a value.
         """
         names, numbers = tuple(values), list(values.values())
         for kind, (places, references) in self._grouped(names).items():
@@ -185,7 +185,8 @@ class CoSimulation:
                 getattr(self._slave, "set" + kind)(references, row)
             except Exception as error:
                 given = ", ".join(f"{names[place]} = {numbers[place]:g}" for place in places)
-                raise ValueError(self._said() or f"the FMU refused {given}: {error}") from error
+                said = self._said() or f"the FMU refused {given}: {error}"
+                raise RefusedError("set inputs", self.time, "Error", said) from error
 
     def step(self, duration: float) -> None:
         """Advance by a duration [s]."""

@@ -37,6 +37,10 @@ class PlantError(FmuError):
         super().__init__(f"plant failed to {step} at t = {time:g} s ({status}){detail}")
 
 
+class RefusedError(PlantError, ValueError):
+    """The model refused a value: a wrong call where a user gives it, a failure where a flight does."""
+
+
 class AircraftError(FmuError):
     """An aircraft file is unusable; lists every mistake in it.
 

@@ -8,6 +8,7 @@ from types import TracebackType
 from typing import Self
 
 from fmu.cosimulation import CoSimulation
+from fmu.errors import PlantError
 from fmu.mapping import LEG_ROLES, ORBIT_ROLES, PlantMapping
 from fmu.plant import LEG, LONGEST_STEP, ORBIT
 from fmu.types import PlantState
@@ -22,6 +23,8 @@ class MappedPlant:
         From `load_mapping`.
     start : mapping, optional
         Further start values by variable, over those of the file, in the FMU's own units.
+    initial : mapping, optional
+        Where to begin, by role, in SI units and radians; roles that the mapping does not have are left out.
 
     Raises
     ------
@@ -31,9 +34,18 @@ class MappedPlant:
         If it refuses a value.
     """
 
-    def __init__(self, mapping: PlantMapping, start: Mapping[str, float] | None = None) -> None:
+    def __init__(
+        self,
+        mapping: PlantMapping,
+        start: Mapping[str, float] | None = None,
+        *,
+        initial: Mapping[str, float] | None = None,
+    ) -> None:
         self._mapping = mapping
-        self._unit = CoSimulation(mapping.fmu, {**mapping.start, **(start or {})}, mapping.description)
+        roles = mapping.initial
+        begin = {roles[k].variable: roles[k].to_fmu(x) for k, x in (initial or {}).items() if k in roles}
+        values = {**mapping.start, **begin, **(start or {})}
+        self._unit = CoSimulation(mapping.fmu, values, mapping.description)
         self._names = [role.variable for role in mapping.state.values()]
         self._wind = (0.0, 0.0)
         self._state: PlantState | None = None
@@ -45,6 +57,8 @@ class MappedPlant:
             numbers = self._unit.read(self._names)
             roles = self._mapping.state.items()
             values = {name: role.from_fmu(x) for (name, role), x in zip(roles, numbers, strict=True)}
+            if lost := [f"{name} = {x!r}" for name, x in values.items() if not math.isfinite(x)]:
+                raise PlantError("read", self._unit.time, "not finite", ", ".join(lost))
             self._state = self._complete(values)
         return self._state
 

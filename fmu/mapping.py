@@ -14,6 +14,12 @@ The file, with all its roles, is described in docs/aircraft.md. In short::
     [command]                    # what the FMU is told
     "leg.to_north" = "target.x"
 
+    [initial]                    # where it is to begin, if it can be told
+    north = "pos.x0"
+
+    [limits]                     # what the avoidance must know of it, to fly it in a scenario
+    max_bank_deg = 30
+
 A role's value in SI units and radians is scale × variable + offset, for what is told as for what is read.
 """
 
@@ -29,6 +35,7 @@ from typing import Any
 
 from fmu.cosimulation import read_description
 from fmu.errors import FmuError
+from fmu.mapped_limits import MappedLimits, read_limits
 from fmu.plant import LEG, ORBIT
 from fmu.types import PlantState
 
@@ -45,8 +52,11 @@ COMMAND_ROLES = tuple(dict.fromkeys(LEG_ROLES + ORBIT_ROLES))
 """What a plant must be able to be told."""
 OPTIONAL_COMMAND = ("mode", "wind.north", "wind.east", "wind.down")
 """mode: 1 leg, 2 orbit. Without the wind's roles the plant refuses any wind."""
+INITIAL_ROLES = ("north", "east", "altitude", "heading", "airspeed")
+"""Where a plant can be told to begin."""
 _MODES = ("leg", "orbit")
-_TABLES = ("start", "state", "command", "mode")
+_TABLES = ("start", "state", "command", "mode", "initial", "limits")
+_SETTABLE = ("input", "parameter", "structuralParameter")
 _FIELDS = ("variable", "scale", "offset")
 
 
@@ -103,6 +113,10 @@ class PlantMapping:
     """The FMU's own numbers for leg and orbit."""
     description: Any
     """fmpy's model description of the FMU."""
+    initial: Mapping[str, Role]
+    """Where it is told to begin."""
+    limits: MappedLimits | None
+    """What it can do; None if the file does not say."""
 
 
 def load_mapping(file: Path) -> PlantMapping:
@@ -155,7 +169,13 @@ def _checked(document: Mapping[str, Any], fmu: Path, description: Any, mistakes:
     modes = dict(_numbers(document, "mode", mistakes))
     mistakes += [f"mode.{name} is unknown; known: leg, orbit" for name in modes if name not in _MODES]
     numbers = {LEG: modes.get("leg", LEG), ORBIT: modes.get("orbit", ORBIT)}
-    return PlantMapping(fmu, start, state, command, numbers, description)
+    initial = dict(_roles(document, "initial", INITIAL_ROLES, INITIAL_ROLES, known, mistakes))
+    for role, found in initial.items():
+        if (causality := known[found.variable]) not in _SETTABLE:
+            what = f"{found.variable!r} cannot be set before the start: it is {causality}"
+            mistakes.append(f"initial.{role}.variable = {what}")
+    limits = read_limits(document["limits"], mistakes) if document["limits"] else None
+    return PlantMapping(fmu, start, state, command, numbers, description, initial, limits)
 
 
 def _roles(

@@ -13,6 +13,7 @@ from scenarios.errors import Problem
 from scenarios.fence import allowed
 from scenarios.scenario import LEAST_AIR_MARGIN, TRAFFIC_VIOLATION_RADIUS, Point, Scenario
 from scenarios.schema import ScenarioTable
+from scenarios.user_plant import plant_problems
 
 Key = Callable[..., str]
 AIRCRAFT_SPEEDS = (12.0, 22.0)
@@ -29,7 +30,9 @@ def semantic_problems(scenario: Scenario, table: ScenarioTable, key: Key) -> lis
         *_vehicles(scenario, key),
         *_fence(scenario, key),
         *_random(scenario),
+        *_airspeeds(scenario, key),
         *_aircraft(scenario),
+        *plant_problems(scenario),
         *wind_problems(scenario),
     ]
 
@@ -164,6 +167,19 @@ def _random(scenario: Scenario) -> list[Problem]:
         message = f"must be at least {least:g}, or nearly every draw falls too close to the start"
         problems.append(Problem("random.sigma_m", settings.sigma, message))
     return problems
+
+
+def _airspeeds(scenario: Scenario, key: Key) -> list[Problem]:
+    """Airspeeds that the aircraft model is not made for; a plant of the user's own has limits of its own."""
+    if scenario.vehicle.plant is not None:
+        return []
+    low, high = AIRCRAFT_SPEEDS
+    speeds = [("vehicle.airspeed_m_s", scenario.vehicle.airspeed)]
+    speeds += [(key("mission", i, "speed_m_s"), p.speed) for i, p in enumerate(scenario.mission) if p.speed]
+    for index, member in enumerate(scenario.vehicles):
+        speeds += [(key("vehicles", index, "mission"), p.speed) for p in member.mission if p.speed]
+    message = f"must be at least {low:g} and at most {high:g}"
+    return [Problem(place, speed, message) for place, speed in speeds if not low <= speed <= high]
 
 
 def _aircraft(scenario: Scenario) -> list[Problem]:

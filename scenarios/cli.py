@@ -95,6 +95,10 @@ def fly(
     fidelity: Annotated[
         str | None, typer.Option(help="6dof or kinematic; the scenario's own if not given.")
     ] = None,
+    plant: Annotated[
+        Path | None,
+        typer.Option(metavar="TOML", help="Fly an FMU of your own: its mapping (docs/aircraft.md)."),
+    ] = None,
     no_avoidance: Annotated[bool, typer.Option("--no-avoidance", help="Fly on whatever is ahead.")] = False,
     output: Annotated[
         Path | None,
@@ -121,7 +125,7 @@ def fly(
         chosen = load(scenario)
         seed = chosen.seed if seed is None else seed
         parameters = planned_by(run.preset(preset or chosen.preset), planner or chosen.planner)
-        chosen = changed(chosen, wind=wind, turbulence=turbulence, fidelity=fidelity)
+        chosen = changed(chosen, wind=wind, turbulence=turbulence, fidelity=fidelity, plant=plant)
         chosen = replace(chosen, seed=seed, preset=parameters.name, planner=parameters.optimiser)
         chosen = run.prepare(chosen, seed, obstacles=obstacles)
         directory = output or free_directory(chosen, seed)

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import TypeVar
 
 from scenarios.check import wind_problems
 from scenarios.errors import ScenarioError
 from scenarios.scenario import FIDELITIES, TURBULENCES, Scenario
+from scenarios.user_plant import plant_problems
 
 T = TypeVar("T")
 
@@ -20,6 +22,7 @@ def changed(
     wind: str | None = None,
     turbulence: str | None = None,
     fidelity: str | None = None,
+    plant: Path | None = None,
 ) -> Scenario:
     """The scenario with what the options say; None leaves a thing as it is.
 
@@ -33,6 +36,8 @@ def changed(
         none, light, moderate or severe.
     fidelity : str, optional
         Equations of motion of the own vehicle.
+    plant : Path, optional
+        Mapping of a user's own FMU.
 
     Raises
     ------
@@ -50,6 +55,10 @@ def changed(
     if fidelity is not None:
         chosen = _known("--fidelity", fidelity, FIDELITIES)
         scenario = replace(scenario, vehicle=replace(scenario.vehicle, fidelity=chosen))
+    if plant is not None:
+        scenario = replace(scenario, vehicle=replace(scenario.vehicle, plant=plant.resolve()))
+    if scenario.vehicle.plant is not None and (problems := plant_problems(scenario)):
+        raise ScenarioError("--plant" if plant else scenario.name, problems)
     return scenario
 
 

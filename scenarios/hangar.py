@@ -19,6 +19,7 @@ from scenarios.score import Energy
 
 if TYPE_CHECKING:
     from fmu.library import FmuLibrary
+    from fmu.mapped import MappedPlant
     from fmu.plant import FmuPlant
 
 TRACKING_ERROR: dict[str, dict[Turbulence, float]] = {
@@ -64,7 +65,7 @@ class Hangar:
         self._parameters = parameters
         self._shared = library is not None
         self._library: FmuLibrary = FmuLibrary.open() if library is None else library
-        self._plants: list[FmuPlant] = []
+        self._plants: list[FmuPlant | MappedPlant] = []
         self._own: list[FmuPlant] = []
 
     def __enter__(self) -> Self:
@@ -85,22 +86,17 @@ class Hangar:
 
     def own_vehicle(self, mission: Sequence[Point] | None = None) -> SimulatedVehicle:
         """A vehicle under test, at the start of its mission; the scenario's unless another is given."""
-        settings = self._scenario.vehicle
-        radius = settings.acceptance_radius or self._parameters.acceptance_radius
-        vehicle = self._vehicle(
-            self._scenario.mission if mission is None else mission,
-            airspeed=settings.airspeed,
-            fidelity=settings.fidelity,
-            acceptance_radius=radius,
-            heading=settings.heading,
-        )
-        self._own.append(self._plants[-1])
-        return vehicle
+        points = self._scenario.mission if mission is None else mission
+        users = self._scenario.vehicle.plant is not None
+        plant, performance = self._user_plant(points) if users else self.own_plant(points)
+        return self._vehicle(plant, performance, points)
 
-    def energy(self) -> Energy:
-        """What is left in the battery; of several own vehicles the least."""
-        if not self._own:
+    def energy(self) -> Energy | None:
+        """What is left in the battery; of several own vehicles the least. None of a user's own FMU."""
+        if not self._plants:
             raise ValueError("own_vehicle() has not been called")
+        if not self._own:
+            return None
         return Energy(
             min(plant.get("battery.state_of_charge") for plant in self._own),
             any(bool(plant.get("battery.on_reserve")) for plant in self._own),
@@ -114,9 +110,10 @@ class Hangar:
         if plan.motion == "point":
             return PointMover(plan)
         wind = self._scenario.wind
-        vehicle = self._vehicle(
+        plant, performance = self._plant(
             plan.waypoints, airspeed=plan.speed, fidelity=plan.motion, acceptance_radius=100.0
         )
+        vehicle = self._vehicle(plant, performance, plan.waypoints)
         return FlownMover(plan, vehicle, wind.speed + wind.gusts)
 
     def own_plant(
@@ -130,8 +127,16 @@ class Hangar:
             It is put at the first point, its nose to the second; the scenario's own if not given.
         on_ground : bool
             Stand there on a catapult, instead of flying there in level trim.
+
+        Raises
+        ------
+        ScenarioError
+            If the scenario names a plant of the user's own, or the aircraft cannot be flown so.
         """
         settings = self._scenario.vehicle
+        if settings.plant is not None:
+            message = f"vehicle.plant = {str(settings.plant)!r} cannot stand behind an autopilot"
+            raise ScenarioError(self._scenario.name, message)
         plant, performance = self._plant(
             self._scenario.mission if mission is None else mission,
             airspeed=settings.airspeed,
@@ -144,25 +149,23 @@ class Hangar:
         return plant, performance
 
     def _vehicle(
-        self,
-        points: Sequence[Point],
-        *,
-        airspeed: float,
-        fidelity: Fidelity,
-        acceptance_radius: float,
-        heading: float | None = None,
+        self, plant: FmuPlant | MappedPlant, performance: Performance, points: Sequence[Point]
     ) -> SimulatedVehicle:
-        plant, performance = self._plant(
-            points,
-            airspeed=airspeed,
-            fidelity=fidelity,
-            acceptance_radius=acceptance_radius,
-            heading=heading,
-        )
+        """A vehicle in front of a plant, its mission started."""
         vehicle = SimulatedVehicle(plant, self.frame, performance)
         vehicle.upload_mission(mission_plan(points, self.frame))
         vehicle.start_mission()
         return vehicle
+
+    def _user_plant(self, points: Sequence[Point]) -> tuple[MappedPlant, Performance]:
+        from scenarios.user_plant import user_plant  # noqa: PLC0415
+
+        settings = self._scenario.vehicle
+        heading = _heading(points) if settings.heading is None else settings.heading
+        radius = settings.acceptance_radius or self._parameters.acceptance_radius
+        plant, performance = user_plant(self._scenario, points[0], heading, radius)
+        self._plants.append(plant)
+        return plant, performance
 
     def _plant(
         self,
@@ -176,9 +179,7 @@ class Hangar:
     ) -> tuple[FmuPlant, Performance]:
         from fmu.plant import FmuPlant  # noqa: PLC0415
 
-        start, then = points[0], points[1]
-        if heading is None:
-            heading = math.atan2(then.east - start.east, then.north - start.north)
+        start = points[0]
         wind = self._scenario.wind
         try:
             plant = FmuPlant(
@@ -189,7 +190,7 @@ class Hangar:
                 north=start.north,
                 east=start.east,
                 altitude=0.0 if on_ground else start.altitude,
-                heading=heading,
+                heading=_heading(points) if heading is None else heading,
                 airspeed=airspeed,
                 home_elevation=self._scenario.home.altitude_m,
                 wind=(wind.north, wind.east, 0.0),
@@ -225,6 +226,12 @@ class Hangar:
             "environment.longitude": math.radians(home.longitude_deg),
             "environment.start_time": self._scenario.start_time_utc.timestamp(),
         }
+
+
+def _heading(points: Sequence[Point]) -> float:
+    """Along the first leg [rad]."""
+    start, then = points[0], points[1]
+    return math.atan2(then.east - start.east, then.north - start.north)
 
 
 def mission_plan(points: Sequence[Point], frame: MapFrame) -> MissionPlan:

@@ -115,7 +115,7 @@ def parse(text: str, file: str | Path = "scenario") -> Scenario:
     table, problems = _validate(raw)
     scenario = None
     if table is not None:
-        found, scenario = _build(table, name)
+        found, scenario = _build(table, name, Path(file).parent)
         problems += found
     if problems or scenario is None:
         raise ScenarioError(file, problems)
@@ -180,7 +180,7 @@ class _Located:
         return explain.key_text((name, number, key) if key else (name, number))
 
 
-def _build(located: _Located, default_name: str) -> tuple[list[Problem], Scenario]:
+def _build(located: _Located, default_name: str, folder: Path) -> tuple[list[Problem], Scenario]:
     table = located.table
     places = Places(table.home)
     mission = places.points(table.mission, DEFAULT_ALTITUDE, partial(located.key, "mission"))
@@ -202,7 +202,7 @@ def _build(located: _Located, default_name: str) -> tuple[list[Problem], Scenari
         message = "must lie within the years 1 to 9999 in UTC"
         problems.append(Problem("start_time_utc", str(table.start_time_utc), message))
     scenario = _assemble(table, default_name, mission, obstacles, traffic, missions)
-    scenario = replace(scenario, geofence=geofence)
+    scenario = replace(scenario, geofence=geofence, vehicle=_vehicle(table, folder))
     return problems + semantic_problems(scenario, table, located.key), scenario
 
 
@@ -266,7 +266,6 @@ def _assemble(
         ),
         wind=Wind(table.wind.north_m_s, table.wind.east_m_s, table.wind.turbulence),
         radar=_radar(table),
-        vehicle=_vehicle(table),
         random=None
         if table.random is None
         else RandomField(
@@ -302,11 +301,12 @@ def _radar(table: ScenarioTable) -> RadarSettings:
     )
 
 
-def _vehicle(table: ScenarioTable) -> VehicleSettings:
+def _vehicle(table: ScenarioTable, folder: Path) -> VehicleSettings:
     vehicle = table.vehicle
     return VehicleSettings(
         aircraft=vehicle.aircraft,
         fidelity=vehicle.fidelity,
+        plant=None if vehicle.plant is None else (folder / vehicle.plant).resolve(),
         airspeed=vehicle.airspeed_m_s,
         acceptance_radius=vehicle.acceptance_radius_m,
         heading=None if vehicle.heading_deg is None else math.radians(vehicle.heading_deg),

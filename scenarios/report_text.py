@@ -8,6 +8,7 @@ from typing import Any
 
 from scenarios.report_data import Mark, Run
 from scenarios.report_geometry import Encounter
+from scenarios.scenario import VehicleSettings
 
 NONE = "–"
 """Stands where a value has no meaning."""
@@ -52,7 +53,7 @@ def origin(run: Run) -> str:
     wind, gusts = scenario.wind.speed, scenario.wind.turbulence
     parts = [
         f"Scenario “{scenario.name}”" + (f": {scenario.description}" if scenario.description else ""),
-        f"{scenario.vehicle.aircraft} ({scenario.vehicle.fidelity}) at {scenario.vehicle.airspeed:g} m/s",
+        f"{_aircraft(scenario.vehicle)} at {scenario.vehicle.airspeed:g} m/s",
         f"wind {wind:.1f} m/s" if wind else "no wind",
         *([f"{gusts} turbulence"] if gusts != "none" else []),
         f"preset {_value(summary.get('preset'))}",
@@ -60,6 +61,13 @@ def origin(run: Run) -> str:
         f"Sidestep {_value(summary.get('version'))}",
     ]
     return " · ".join(parts)
+
+
+def _aircraft(vehicle: VehicleSettings) -> str:
+    """What flew, in words."""
+    if vehicle.plant is not None:
+        return f"an FMU of the user's own ({vehicle.plant.name})"
+    return f"{vehicle.aircraft} ({vehicle.fidelity})"
 
 
 def doubts(run: Run) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from itertools import pairwise
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -157,6 +158,8 @@ class VehicleSettings:
     aircraft: str = "skywalker_x8"
     """Name of a parameter set."""
     fidelity: Fidelity = "6dof"
+    plant: Path | None = None
+    """A user's own FMU in its place: the mapping file (`fmu.mapping`), absolute."""
     airspeed: float = 15.0
     """Cruise true airspeed [m/s]."""
     acceptance_radius: float | None = None

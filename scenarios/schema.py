@@ -22,7 +22,7 @@ Longitude = Annotated[float, Field(ge=-180.0, le=180.0)]
 SafetyRadius = Annotated[float, Field(gt=0.0, le=50_000.0)]
 Seconds = Annotated[float, Field(ge=0.0, le=1_000_000.0)]
 Identity = Annotated[int, Field(ge=0, le=999_999_999)]
-Airspeed = Annotated[float, Field(ge=12.0, le=22.0)]
+Airspeed = Annotated[float, Field(gt=0.0, le=100.0)]
 WindComponent = Annotated[float, Field(ge=-30.0, le=30.0)]
 
 
@@ -118,6 +118,7 @@ class VehicleTable(Table):
 
     aircraft: Name = "skywalker_x8"
     fidelity: Literal["6dof", "kinematic"] = "6dof"
+    plant: Annotated[str, Field(min_length=1, max_length=4_000)] | None = None
     airspeed_m_s: Airspeed = 15.0
     acceptance_radius_m: Annotated[float, Field(ge=20.0, le=10_000.0)] | None = None
     heading_deg: Annotated[float, Field(ge=-360.0, le=360.0)] | None = None

@@ -54,6 +54,7 @@ def to_toml(scenario: Scenario) -> str:
             "[vehicle]",
             aircraft=vehicle.aircraft,
             fidelity=vehicle.fidelity,
+            plant=None if vehicle.plant is None else str(vehicle.plant),
             airspeed_m_s=vehicle.airspeed,
             acceptance_radius_m=vehicle.acceptance_radius,
             heading_deg=heading,

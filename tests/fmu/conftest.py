@@ -6,6 +6,7 @@ import pytest
 
 from fmu import FmuLibrary, FmuPlant
 from fmu.build import build_fmu
+from tests.fmu.users import make_users_fmu
 
 
 @pytest.fixture(scope="session")
@@ -23,6 +24,12 @@ def fmi2_file(fmu_file):
 def library(fmu_file):
     with FmuLibrary.open(fmu_file) as opened:
         yield opened
+
+
+@pytest.fixture(scope="session")
+def users(tmp_path_factory):
+    """Mapping of an FMU that pythonfmu makes."""
+    return make_users_fmu(tmp_path_factory.mktemp("user"))
 
 
 @pytest.fixture

@@ -26,41 +26,6 @@ OWN = "\n".join(
     + [f'"{role}" = "command.{role}"' for role in COMMAND_ROLES]
     + [f'"wind.{axis}" = "wind.{axis}"' for axis in ("north", "east", "down")]
 )
-USERS = """
-fmu = "UserAircraft.fmu"
-
-[start]
-turn_limit = 20.0
-
-[state]
-north = "x"
-east = "y"
-altitude = {variable = "height_ft", scale = 0.3048, offset = -100.0}
-velocity_north = "vx"
-velocity_east = "vy"
-climb_rate = {variable = "vz_ft_min", scale = 0.00508}
-airspeed = {variable = "tas_kt", scale = 0.5144444444444445}
-heading = {variable = "track_deg", scale = 0.017453292519943295}
-
-[command]
-mode = "goal_mode"
-"leg.from_north" = "a_x"
-"leg.from_east" = "a_y"
-"leg.to_north" = "b_x"
-"leg.to_east" = "b_y"
-"orbit.north" = "c_x"
-"orbit.east" = "c_y"
-"orbit.radius" = "c_r"
-"orbit.direction" = "c_turn"
-altitude = {variable = "alt_ft", scale = 0.3048, offset = -100.0}
-airspeed = {variable = "speed_kt", scale = 0.5144444444444445}
-"wind.north" = "wind_x"
-"wind.east" = "wind_y"
-
-[mode]
-leg = 3
-orbit = 7
-"""
 
 
 @pytest.fixture
@@ -69,17 +34,6 @@ def own(fmu_file, tmp_path):
     shutil.copy(fmu_file, tmp_path / "own.fmu")
     file = tmp_path / "own.toml"
     file.write_text(OWN)
-    return file
-
-
-@pytest.fixture(scope="module")
-def users(tmp_path_factory):
-    """An FMU that pythonfmu makes, and its mapping."""
-    builder = pytest.importorskip("pythonfmu.builder", reason="pythonfmu is not installed (extra dev)")
-    folder = tmp_path_factory.mktemp("user")
-    builder.FmuBuilder.build_FMU(Path(__file__).with_name("user_aircraft.py"), dest=folder)
-    file = folder / "mapping.toml"
-    file.write_text(USERS)
     return file
 
 

@@ -21,6 +21,7 @@ class UserAircraft(Fmi2Slave):
         self.vx = self.vy = self.vz_ft_min = 0.0
         self.wind_x = self.wind_y = 0.0
         self.turn_limit = 15.0
+        self.x_0, self.y_0, self.height_0_ft = 0.0, 0.0, 600.0
         for name in ("x", "y", "height_ft", "track_deg", "tas_kt", "vx", "vy", "vz_ft_min"):
             self.register_variable(Real(name, causality=Fmi2Causality.output))
         for name in INPUTS:
@@ -28,8 +29,12 @@ class UserAircraft(Fmi2Slave):
             self.register_variable(Real(name, causality=Fmi2Causality.input))
         for name in ("wind_x", "wind_y"):
             self.register_variable(Real(name, causality=Fmi2Causality.input))
-        limit = Real("turn_limit", causality=Fmi2Causality.parameter, variability=Fmi2Variability.fixed)
-        self.register_variable(limit)
+        for name in ("turn_limit", "x_0", "y_0", "height_0_ft"):
+            fixed = Real(name, causality=Fmi2Causality.parameter, variability=Fmi2Variability.fixed)
+            self.register_variable(fixed)
+
+    def exit_initialization_mode(self):
+        self.x, self.y, self.height_ft = self.x_0, self.y_0, self.height_0_ft
 
     def do_step(self, now, duration):
         steps = max(1, math.ceil(duration / 0.05 - 1e-9))
