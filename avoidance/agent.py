@@ -9,8 +9,9 @@ import numpy as np
 from avoidance.conflicts import first_conflict
 from avoidance.contingency import first_trap, orbit_from_here
 from avoidance.escape import Escape
+from avoidance.geofence import OPEN, Geofence
 from avoidance.holding import hold_on, holding_words, skipped
-from avoidance.known import Known, keep_what_can_be_kept, known_obstacles
+from avoidance.known import Known, keep_what_can_be_kept, known_obstacles, within_fence
 from avoidance.ladder import Way, way_round
 from avoidance.parameters import DEFAULT, Parameters
 from avoidance.passages import Gap, way_with_orbits
@@ -57,6 +58,8 @@ class Agent:
         The planner's randomness; seed 0 unless given.
     way : callable, optional
         Finds the way round; another planner than the ladder of single waypoints.
+    geofence : Geofence, optional
+        Bounds every detour, route, stand-in and orbit.
 
     Notes
     -----
@@ -72,14 +75,16 @@ class Agent:
         parameters: Parameters = DEFAULT,
         rng: np.random.Generator | None = None,
         way: Way = way_round,
+        geofence: Geofence = OPEN,
     ) -> None:
         self._performance = performance
         self._parameters = parameters
         self._rng = np.random.default_rng(0) if rng is None else rng
         self._way = way
+        self._geofence = geofence
         self._tracker = Tracker(parameters)
         self._escape = Escape(performance)
-        self._replacements = Replacements(performance, parameters)
+        self._replacements = Replacements(performance, parameters, geofence)
         self._checked: int | None = None
         self._failures = 0
         self._checked_route: Route | None = None
@@ -115,6 +120,7 @@ class Agent:
             return CLEAR
         self._replacements.learn(route)
         known = known_obstacles(picture, own, route, self._performance, self._parameters)
+        known = within_fence(known, self._geofence, own, self._parameters)
         decision = self._decide(own, route, known)
         if isinstance(decision, Keep | Hold):
             self._checked_route, self._checked = route, picture.version
@@ -176,8 +182,7 @@ class Agent:
                 self._holding = False
                 return skipped(gap.route, gap.blocked, gap.end)
             return Keep(why=holding_words(gap.blocked), threat=threat, rung=Rung.ORBIT)
-        circles = gap.known.circles(gap.own.altitude, gap.own.altitude)
-        orbit = orbit_from_here(gap.own, circles, self._performance)
+        orbit = orbit_from_here(gap.own, gap.known, self._performance)
         if orbit.clearance < 0.0 and threat.distance > LAST_MOMENT * self._performance.turn_radius:
             self._retry_at = gap.own.time
             words = f"{threat_words(threat)}; hold as soon as there is room to"

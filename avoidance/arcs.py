@@ -22,6 +22,8 @@ ON_CIRCLE = 1e-6
 
 Pairs: TypeAlias = tuple[Ints, Ints, Floats]
 """Covered disc, disc that covers it, half of the covered angle [rad]."""
+Barred: TypeAlias = tuple[Ints, Floats, Floats]
+"""Disc, first angle of an arc of its circle in [0, 2π), last angle up to a full turn later [rad]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -131,7 +133,13 @@ def overlapping_pairs(centres: Floats, radii: Floats, covering: Floats) -> Pairs
     return np.concatenate(covered), np.concatenate(coverers), np.concatenate(widths)
 
 
-def covered_arcs(centres: Floats, radii: Floats, covering: Floats, pairs: Pairs | None = None) -> CoveredArcs:
+def covered_arcs(
+    centres: Floats,
+    radii: Floats,
+    covering: Floats,
+    pairs: Pairs | None = None,
+    barred: Barred | None = None,
+) -> CoveredArcs:
     """Find the arcs of each circle that lie inside other discs.
 
     Parameters
@@ -145,6 +153,8 @@ def covered_arcs(centres: Floats, radii: Floats, covering: Floats, pairs: Pairs 
         `radii`, points on two circles at once stay free.
     pairs : Pairs, optional
         The result of `overlapping_pairs` where it is known already.
+    barred : Barred, optional
+        Further arcs that are covered, by no disc.
 
     Returns
     -------
@@ -152,13 +162,16 @@ def covered_arcs(centres: Floats, radii: Floats, covering: Floats, pairs: Pairs 
         The arcs, merged where they overlap.
     """
     disc, by, half = pairs or overlapping_pairs(centres, radii, covering)
-    if not len(disc):
+    if not len(disc) and (barred is None or not len(barred[0])):
         return uncovered(len(radii))
     away = centres[by] - centres[disc]
     begin = np.mod(np.arctan2(away[:, 1], away[:, 0]) - half, TAU)
     end = begin + 2.0 * half
     whole = half >= math.pi
     begin[whole], end[whole] = 0.0, TAU
+    if barred is not None:
+        disc, by = np.concatenate([disc, barred[0]]), np.concatenate([by, np.full(len(barred[0]), -1)])
+        begin, end = np.concatenate([begin, barred[1]]), np.concatenate([end, barred[2]])
     over = end > TAU
     if over.any():
         disc, by = np.concatenate([disc, disc[over]]), np.concatenate([by, by[over]])

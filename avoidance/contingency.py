@@ -14,7 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from avoidance.flown import SEQUENCING_DELAY
-from avoidance.geometry import segments_clearance
+from avoidance.geofence import FENCE, Walls
+from avoidance.geometry import distances, segments_clearance
 from avoidance.known import Circles, Known
 from avoidance.parameters import Parameters
 from avoidance.route_check import Blocked, altitude_bands, remaining_points
@@ -55,15 +56,15 @@ def orbit_reach(performance: Performance, radii: float = TIGHT) -> float:
     return math.hypot(radius, _lead(performance)) + 2.0 * performance.tracking_error
 
 
-def orbit_from_here(own: Ownship, circles: Circles, performance: Performance) -> Orbit:
+def orbit_from_here(own: Ownship, known: Known, performance: Performance) -> Orbit:
     """The best orbit that can be begun at once: a wide one if it is free, else the freer of the tight ones.
 
     Parameters
     ----------
     own : Ownship
         Where the vehicle is.
-    circles : Circles
-        What stands still at its altitude.
+    known : Known
+        What stands still, and the geofence.
     performance : Performance
         How it turns.
 
@@ -72,14 +73,15 @@ def orbit_from_here(own: Ownship, circles: Circles, performance: Performance) ->
     Orbit
         Free if its clearance is not negative.
     """
-    wide, tight = (_freer_side(own, circles, performance, radii) for radii in (WIDE, TIGHT))
+    wide, tight = (_freer_side(own, known, performance, radii) for radii in (WIDE, TIGHT))
     return wide if wide.clearance >= 0.0 else tight
 
 
-def _freer_side(own: Ownship, circles: Circles, performance: Performance, radii: float) -> Orbit:
+def _freer_side(own: Ownship, known: Known, performance: Performance, radii: float) -> Orbit:
     here, course = np.array([[own.north, own.east]]), np.array([own.course])
     centres = _centres(here, course, performance, radii)[0]
-    clearance = _clearance(centres, circles) - orbit_reach(performance, radii)
+    clearance = _clearance(centres, known.circles(own.altitude, own.altitude), known.walls)
+    clearance -= orbit_reach(performance, radii)
     side = int(np.argmax(clearance))
     north, east = centres[side].tolist()
     radius = radii * performance.turn_radius
@@ -114,7 +116,9 @@ def first_trap(
     Orbits are looked for every `SPACING` metres where something is near; each is tested in closed form,
     with the corners of the route allowed for.
     """
-    if parameters.pop_up_room is None or not len(known.ids) or not route.waypoints:
+    if parameters.pop_up_room is None or not route.waypoints:
+        return None
+    if not (len(known.ids) or len(known.walls)):
         return None
     points = remaining_points(own, route, performance.tracking_error, performance.capture_distance)[0]
     inserted = len(points) - 1 - len(route.waypoints)
@@ -127,13 +131,13 @@ def first_trap(
         circles = known.circles(*band)
         for leg in legs:
             for k in [leg + inserted] if leg else range(inserted + 1):
-                at, rows = _narrow(points[k], points[k + 1], corners[k], circles, performance)
+                at, rows = _narrow(points[k : k + 2], corners[k], circles, known.walls, performance)
                 for s, walls in zip((at + reached[k]).tolist(), rows.tolist(), strict=True):
                     run = run + (s - last) if s - last < 2.0 * SPACING else 0.0
                     begin = begin if run > 0.0 else leg
                     last = s
                     if run > longest:
-                        rows = np.unique(circles.rows[walls])
+                        rows = np.unique([circles.rows[w] for w in walls if w >= 0]).astype(np.int64)
                         return _blocked(known, rows, begin, s - run, own, turning_room(performance))
     return None
 
@@ -169,11 +173,12 @@ def _centres(points: Floats, courses: Floats, performance: Performance, radii: f
     return np.asarray(entry[:, None] + offset[None, :, None] * right[:, None])
 
 
-def _clearance(points: Floats, circles: Circles) -> Floats:
-    """Distance of points, shape (n, 2), from the nearest sphere [m], shape (n,); infinite without any."""
+def _clearance(points: Floats, circles: Circles, walls: Walls) -> Floats:
+    """Distance of points, shape (n, 2), from the nearest sphere or wall [m], shape (n,)."""
     north = points[:, 0, None] - circles.centres[:, 0]
     east = points[:, 1, None] - circles.centres[:, 1]
-    return np.asarray((np.hypot(north, east) - circles.hard).min(axis=1, initial=math.inf))
+    spheres = (np.hypot(north, east) - circles.hard).min(axis=1, initial=math.inf)
+    return np.asarray(np.minimum(spheres, walls.clearance(points, points)))
 
 
 def _corner_room(points: Floats, course: float, performance: Performance) -> Floats:
@@ -193,44 +198,54 @@ def _corner_room(points: Floats, course: float, performance: Performance) -> Flo
 
 
 def _narrow(
-    begin: Floats, end: Floats, room: Floats, circles: Circles, performance: Performance
+    leg: Floats, room: Floats, circles: Circles, walls: Walls, performance: Performance
 ) -> tuple[Floats, Ints]:
-    """Where on a segment no orbit can be begun, and what is in the way on both sides.
+    """Where on a leg, ends of shape (2, 2), no orbit can be begun, and what is in the way on both sides.
 
     Returns
     -------
     along : array, shape (n,)
         Distances from the beginning, ascending, `SPACING` apart within one stretch [m].
     nearest : array, shape (n, 2)
-        Rows of the `circles` in the way of the orbits to both sides.
+        Rows of the `circles` in the way of the orbits to both sides; -1 for walls.
     """
-    nothing = np.empty(0), np.empty((0, 2), dtype=np.int64)
+    begin, end = leg
     length = float(np.hypot(*(end - begin)))
     reach = orbit_reach(performance) + 2.0 * performance.tracking_error
     widest = reach + 2.0 * TIGHT * performance.turn_radius + float(room.max())
-    gap = segments_clearance(begin[None], end[None], circles.centres)[0] - circles.hard
-    near = np.flatnonzero(gap < widest)
-    if not len(near) or length < 1e-6:
-        return nothing
+    near = np.flatnonzero(segments_clearance(leg[:1], leg[1:], circles.centres)[0] - circles.hard < widest)
+    fenced = bool(walls.clearance(leg[:1], leg[1:])[0] < widest)
+    if not (len(near) or fenced) or length < 1e-6:
+        return np.empty(0), np.empty((0, 2), dtype=np.int64)
     unit = (end - begin) / length
-    at = _places(unit, begin, length, circles.centres[near], circles.hard[near] + widest)
-    points = begin + at[:, None] * unit
+    radii = circles.hard[near] + widest
+    at = _places(unit, begin, length, circles.centres[near], radii, (walls if fenced else Walls(), widest))
     courses = np.full(len(at), math.atan2(unit[1], unit[0]))
     run = performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
     extra = np.maximum(
         np.where(at < performance.capture_distance, room[0], 0.0), np.where(length - at < run, room[1], 0.0)
     )
-    centres = _centres(points, courses, performance, TIGHT).reshape(-1, 2)
-    away = np.hypot(
-        centres[:, 0, None] - circles.centres[near, 0], centres[:, 1, None] - circles.centres[near, 1]
-    )
-    margins = (away - circles.hard[near]).reshape(len(at), 2, len(near))
+    centres = _centres(begin + at[:, None] * unit, courses, performance, TIGHT).reshape(-1, 2)
+    margins = np.concatenate(
+        [
+            distances(centres, circles.centres[near]) - circles.hard[near],
+            walls.clearance(centres, centres)[:, None],
+        ],
+        axis=1,
+    ).reshape(len(at), 2, -1)
     free: Bools = (margins.min(axis=2) >= (reach + extra)[:, None]).any(axis=1)
-    return at[~free], near[margins.argmin(axis=2)][~free]
+    return at[~free], np.append(near, -1)[margins.argmin(axis=2)][~free]
 
 
-def _places(unit: Floats, begin: Floats, length: float, centres: Floats, radii: Floats) -> Floats:
-    """Distances along a segment, every `SPACING`, at which it is inside some circle [m], ascending."""
+def _places(
+    unit: Floats,
+    begin: Floats,
+    length: float,
+    centres: Floats,
+    radii: Floats,
+    walls: tuple[Walls, float],
+) -> Floats:
+    """Distances along a segment, every `SPACING`, at which a circle or a wall is near [m], ascending."""
     offset = centres - begin
     along = offset @ unit
     across = unit[0] * offset[:, 1] - unit[1] * offset[:, 0]
@@ -238,13 +253,16 @@ def _places(unit: Floats, begin: Floats, length: float, centres: Floats, radii: 
     grid = np.arange(0.0, length + SPACING, SPACING)
     grid[-1] = length
     inside = (np.abs(grid[:, None] - along) <= half + SPACING).any(axis=1)
+    if len(walls[0]):
+        places = begin + grid[:, None] * unit
+        inside |= walls[0].clearance(places, places) < walls[1] + SPACING
     return np.asarray(grid[inside])
 
 
 def _blocked(known: Known, rows: Ints, leg: int, distance: float, own: Ownship, required: float) -> Blocked:
     """A passage that may not be entered, as the record has it."""
     threat = Threat(
-        ids=tuple(dict.fromkeys(known.ids[rows].tolist())),
+        ids=tuple(dict.fromkeys(known.ids[rows].tolist())) or (FENCE,),
         leg=leg,
         distance=max(distance, 0.0),
         time=max(distance, 0.0) / max(own.ground_speed, 1.0),

@@ -69,6 +69,7 @@ def search_problem(
         centres=circles.centres,
         keep=circles.keep,
         keep_waypoint=circles.keep_waypoint,
+        walls=known.walls,
         avoided=avoided,
         intruders=known.intruders,
         delay=flown / performance.airspeed,

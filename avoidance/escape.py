@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from avoidance.free_space import free_candidates
+from avoidance.geofence import Walls
 from avoidance.geometry import point_distances, segments_clearance
 from avoidance.known import Circles, Known
 from avoidance.types import Decision, Detour, Keep, Ownship, Performance, Route, Rung, Threat, Waypoint
@@ -40,7 +41,7 @@ class Escape:
             return Keep(why="the route is clear")
         self._escaping = True
         deepest = int(np.argmax(depth))
-        point = way_out(here, circles, self._performance.turn_room)
+        point = way_out(here, circles, known.walls, self._performance.turn_room)
         if point is None:
             return None
         threat = Threat(
@@ -62,7 +63,9 @@ class Escape:
         )
 
 
-def way_out(here: tuple[float, float], circles: Circles, turn_room: float) -> tuple[float, float] | None:
+def way_out(
+    here: tuple[float, float], circles: Circles, walls: Walls, turn_room: float
+) -> tuple[float, float] | None:
     """The nearest point out of all circles that is reached straight without going deeper into any.
 
     Parameters
@@ -71,6 +74,8 @@ def way_out(here: tuple[float, float], circles: Circles, turn_room: float) -> tu
         Where the vehicle is, north and east [m].
     circles : Circles
         What is to be kept out of.
+    walls : Walls
+        What is not to be crossed.
     turn_room : float
         Room beyond the circles that the point has if there is such a point [m].
 
@@ -84,7 +89,7 @@ def way_out(here: tuple[float, float], circles: Circles, turn_room: float) -> tu
         points = free_candidates(here, circles.centres, circles.keep + room)[:MOST_WAYS_OUT]
         starts = np.broadcast_to(np.array(here), points.shape)
         deeper = segments_clearance(starts, points, circles.centres) < present
-        straight = np.flatnonzero(~deeper.any(axis=1))
+        straight = np.flatnonzero(~deeper.any(axis=1) & (walls.clearance(starts, points) > 0.0))
         if len(straight):
             return float(points[straight[0], 0]), float(points[straight[0], 1])
     return None

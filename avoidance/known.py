@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from avoidance.geofence import FENCE, Geofence, Walls
 from avoidance.parameters import Parameters
 from avoidance.prediction import Intruders
 from avoidance.tracking import Picture
@@ -63,6 +64,8 @@ class Known:
     """A route is left alone until it comes nearer than is to be kept by this [m], shape (d,)."""
     most: Floats
     """No more than this can be kept, for the vehicle is too near already [m], shape (d,)."""
+    walls: Walls
+    """Edges of the geofence, with what is kept from them."""
     intruder_ids: Ints
     """Radar identities of what moves, shape (q,)."""
     intruders: Intruders
@@ -77,8 +80,9 @@ class Known:
         is nearest to their centre; one more than its radius above or below does not count.
         """
         above = np.maximum(self.altitudes - high, low - self.altitudes) - ALTITUDE_TOLERANCE
-        height = np.maximum(above, 0.0)
-        rows = np.flatnonzero(height < self.radii)
+        fence = self.ids == FENCE
+        height = np.where(fence, 0.0, np.maximum(above, 0.0))
+        rows = np.flatnonzero((height < self.radii) | fence)
         cut = np.sqrt(self.radii[rows] ** 2 - height[rows] ** 2)
         keep = cut + self.margin[rows]
         return Circles(
@@ -135,6 +139,7 @@ def known_obstacles(
         doubt=doubt[still],
         slack=parameters.hysteresis + doubt[still],
         most=np.full(int(still.sum()), np.inf),
+        walls=Walls(),
         **_traffic(picture, moving, radii, own, route, parameters),
     )
 
@@ -160,6 +165,36 @@ def _traffic(
     }
 
 
+def within_fence(known: Known, fence: Geofence, own: Ownship, parameters: Parameters) -> Known:
+    """The same with the geofence: its circles and the ends of its walls as obstacles, and the walls.
+
+    Outside the fence its walls are left out: they must not bar the way back.
+    """
+    if not fence.areas:
+        return known
+    inside = bool(fence.allows(np.array([[own.north, own.east]]))[0])
+    posts = np.column_stack([fence.posts, np.zeros(len(fence.posts))]) if inside else np.empty((0, 3))
+    rows = np.concatenate([fence.discs, posts])
+    count = len(rows)
+
+    def with_rows(values: Floats, more: Floats | float) -> Floats:
+        return np.concatenate([values, np.broadcast_to(more, (count,))])
+
+    return replace(
+        known,
+        ids=np.concatenate([known.ids, np.full(count, FENCE, dtype=np.int64)]),
+        centres=np.concatenate([known.centres, rows[:, :2]]),
+        altitudes=with_rows(known.altitudes, own.altitude),
+        radii=with_rows(known.radii, rows[:, 2]),
+        margin=with_rows(known.margin, parameters.margin),
+        tolerance=with_rows(known.tolerance, parameters.margin),
+        doubt=with_rows(known.doubt, 0.0),
+        slack=with_rows(known.slack, parameters.hysteresis),
+        most=with_rows(known.most, np.inf),
+        walls=Walls(fence.walls, parameters.margin) if inside else Walls(),
+    )
+
+
 def keep_what_can_be_kept(known: Known, own: Ownship, performance: Performance) -> Known:
     """The same, asking no more distance of an obstacle than can be kept.
 
@@ -167,10 +202,15 @@ def keep_what_can_be_kept(known: Known, own: Ownship, performance: Performance) 
     insisted on the margin there would find nothing. Below the sphere's radius this goes only where the
     vehicle is about to be inside the sphere whatever it does.
     """
-    if not len(known.ids):
-        return known
     run = performance.airspeed * (performance.roll_time + 1.0)
     ahead = np.array([math.cos(own.course), math.sin(own.course)])
+    if len(known.walls):
+        here = np.array([[own.north, own.east]])
+        gap = float(known.walls.clearance(here, here + run * ahead)[0])
+        room = min(known.walls.room, max(gap - 1.0, 0.0))
+        known = replace(known, walls=replace(known.walls, room=room))
+    if not len(known.ids):
+        return known
     offset = known.centres - np.array([own.north, own.east])
     along = np.clip(offset @ ahead, 0.0, run)
     nearest = np.hypot(offset[:, 0] - along * ahead[0], offset[:, 1] - along * ahead[1])

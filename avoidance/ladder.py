@@ -139,7 +139,8 @@ def exact_route(problem: WaypointProblem) -> tuple[tuple[float, float], ...] | N
     room = 2.0 * problem.performance.turn_radius
     for pad in (1.0, 0.25 * room, 0.5 * room, room, 2.0 * room):
         radii = np.minimum(np.minimum(keep + pad, free_start), free_target)
-        path = shortest_path(problem.start, problem.target, problem.centres, np.maximum(radii, 0.0))
+        walls = replace(problem.walls, room=problem.walls.room + pad)
+        path = shortest_path(problem.start, problem.target, problem.centres, np.maximum(radii, 0.0), walls)
         if path is None:
             return None
         corners = path.polyline(LARGEST_CORNER)
@@ -159,7 +160,6 @@ def _flyable(problem: WaypointProblem, corners: Floats) -> bool:
         corners = np.concatenate([np.array([problem.before]), corners])
     starts, ends, extra = flown_segments(corners[None], problem.course, problem.performance)
     skip = 0 if problem.before is None else 1
-    shortfall = feasible_segments(
-        starts[:, skip:], ends[:, skip:], extra[:, skip:], problem.centres, problem.keep - 0.5
-    )
-    return bool(shortfall[0] <= 0.0)
+    starts, ends, extra = starts[:, skip:], ends[:, skip:], extra[:, skip:]
+    shortfall = feasible_segments(starts, ends, extra, problem.centres, problem.keep - 0.5)
+    return bool(shortfall[0] <= 0.0 and problem.walls.shortfall(starts, ends, extra)[0] <= 0.5)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from avoidance.constraints import (
 )
 from avoidance.cost import path_length, risk
 from avoidance.flown import SEQUENCING_DELAY, flown_segments
+from avoidance.geofence import Walls
 from avoidance.geometry import distances
 from avoidance.parameters import Parameters
 from avoidance.prediction import Intruders, ground_speeds, separation_shortfall
@@ -61,6 +62,8 @@ class WaypointProblem:
     """What the vehicle can fly."""
     parameters: Parameters
     """Weights, limits and seeds."""
+    walls: Walls = field(default_factory=Walls)
+    """Edges of the geofence."""
     relaxed: frozenset[str] = frozenset()
     """Constraints given up on this rung of the ladder: any of "g4", "g2", "g1"."""
 
@@ -122,7 +125,7 @@ class WaypointProblem:
         return safe_waypoint(points, self.centres[self.avoided], required[self.avoided])
 
     def _feasible_route(self, points: Floats) -> Floats:
-        if not len(self.centres):
+        if not len(self.centres) and not len(self.walls):
             return np.zeros(len(points))
         corners = [self.start, None, self.target] if self.before is None else [self.before, self.start, None]
         if self.before is not None:
@@ -132,7 +135,11 @@ class WaypointProblem:
             route[:, i] = points if corner is None else corner
         starts, ends, extra = flown_segments(route, self.course, self.performance)
         skip = 0 if self.before is None else 1  # the leg that leads to the start is another search's
-        return feasible_segments(starts[:, skip:], ends[:, skip:], extra[:, skip:], self.centres, self.keep)
+        starts, ends, extra = starts[:, skip:], ends[:, skip:], extra[:, skip:]
+        shortfall = feasible_segments(starts, ends, extra, self.centres, self.keep)
+        return (
+            np.maximum(shortfall, self.walls.shortfall(starts, ends, extra)) if len(self.walls) else shortfall
+        )
 
     def separation_shortfall(self, waypoints: Sequence[Sequence[float]]) -> float:
         """How much is missing to what is to be kept from intruders on a route by these waypoints [m]."""

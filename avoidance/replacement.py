@@ -8,7 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from avoidance.contingency import turning_room
+from avoidance.fenced_space import nearest_within
 from avoidance.free_space import nearest_free
+from avoidance.geofence import FENCE, OPEN, Geofence, Walls
 from avoidance.geometry import point_distances
 from avoidance.known import Circles, Known
 from avoidance.parameters import Parameters
@@ -25,9 +27,12 @@ class Replacements:
         What the vehicle can fly.
     parameters : Parameters
         Preset.
+    geofence : Geofence, optional
+        Bounds the stand-ins.
     """
 
-    def __init__(self, performance: Performance, parameters: Parameters) -> None:
+    def __init__(self, performance: Performance, parameters: Parameters, geofence: Geofence = OPEN) -> None:
+        self._geofence = geofence
         self._performance = performance
         self._parameters = parameters
         self._mission: dict[int, Waypoint] = {}
@@ -50,7 +55,7 @@ class Replacements:
         version : int
             Changes when what is known does: stand-ins are chosen again only then.
         """
-        if not len(known.ids) and not any(w.moved for w in route.waypoints):
+        if not (len(known.ids) or self._geofence.areas) and not any(w.moved for w in route.waypoints):
             return None
         room = self._waypoint_room()
         circles: dict[float, Circles] = {}
@@ -65,9 +70,10 @@ class Replacements:
             unsafe = np.flatnonzero(distance < near.keep + room - 1.0)
             unsafe = unsafe[np.argsort(distance[unsafe], kind="stable")]
             reconsider = waypoint.moved and self._reconsidered != version
-            if not len(unsafe) and not reconsider:
+            fenced = self._too_near_to_fence(waypoint, room)
+            if not (len(unsafe) or reconsider or fenced):
                 continue
-            ids = tuple(dict.fromkeys(known.ids[near.rows[unsafe]].tolist()))
+            ids = tuple(dict.fromkeys([*known.ids[near.rows[unsafe]].tolist(), *([FENCE] if fenced else [])]))
             decision = self.move(own, route, near, index, ids)
             if decision is not None:
                 return decision
@@ -90,7 +96,12 @@ class Replacements:
         point = None
         for room in self._rooms():
             safe = circles.keep + room
-            point = nearest_free(place, here, circles.centres, safe, np.minimum(passing, safe))
+            discs = (circles.centres, safe, np.minimum(passing, safe))
+            if len(self._geofence.walls):
+                fence = (self._geofence, self._parameters.margin, self._parameters.margin + room)
+                point = nearest_within(place, here, *discs, *fence)
+            else:
+                point = nearest_free(place, here, *discs)
             if point is not None:
                 break
         if point is None or math.dist(point, (waypoint.north, waypoint.east)) < 1.0:
@@ -116,6 +127,14 @@ class Replacements:
             return False
         self._wide.add(waypoint.item)
         return True
+
+    def _too_near_to_fence(self, waypoint: Waypoint, room: float) -> bool:
+        """True if a waypoint lies outside the geofence, or nearer to its edge than may be flown to."""
+        place = np.array([[waypoint.north, waypoint.east]])
+        if not len(self._geofence.walls):
+            return False
+        gap = float(Walls(self._geofence.walls).clearance(place, place)[0])
+        return gap < self._parameters.margin + room - 1.0 or not self._geofence.allows(place)[0]
 
     def _waypoint_room(self) -> float:
         """Room beyond `keep` that a mission waypoint needs, so that it can be left again."""

@@ -8,10 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from avoidance.flown import flown_segments
-from avoidance.geometry import segments_clearance
+from avoidance.geofence import FENCE, Walls
+from avoidance.geometry import distances, point_distances, segments_clearance
 from avoidance.known import Known
 from avoidance.types import Floats, Ints, Ownship, Performance, Route, Threat
 
+FENCE_SLACK = 10.0
+"""A route is left alone until it comes this much nearer to the geofence than is to be kept [m]."""
+FENCE_STEP = 50.0
+"""How exactly it is told where a route comes too near to the geofence [m]."""
 LEVEL = 5.0
 """A vehicle this near to the altitude of its waypoint flies level [m]."""
 
@@ -77,7 +82,7 @@ def first_blocked_leg(
     Algorithms 5 and 6, Eqs. (22)-(26), on the curve that will be flown. Differs from the paper: E17, a
     segment is tested and not an infinite line, which makes Algorithm 5 superfluous.
     """
-    if not len(known.ids) or not route.waypoints:
+    if not (len(known.ids) or len(known.walls)) or not route.waypoints:
         return None
     points = remaining_points(own, route, performance.tracking_error, performance.capture_distance)
     inserted = points.shape[1] - 1 - len(route.waypoints)
@@ -115,7 +120,53 @@ def first_blocked_leg(
             required=float(circles.keep[nearest]),
         )
         first = Blocked(threat, leg, rows)
+    if len(known.walls):
+        fenced = _first_fenced_leg(own, points[0], (starts[0], ends[0], extra[0], legs), known, slack)
+        if fenced is not None and (first is None or _order(fenced) < _order(first)):
+            return fenced
     return first
+
+
+def _order(blocked: Blocked) -> tuple[int, float]:
+    return blocked.leg, blocked.threat.distance
+
+
+def _first_fenced_leg(
+    own: Ownship, points: Floats, curve: tuple[Floats, Floats, Floats, Ints], known: Known, slack: float
+) -> Blocked | None:
+    """The first leg that comes too near to an edge of the geofence."""
+    starts, ends, extra, legs = curve
+    gaps = known.walls.clearances(starts, ends)
+    room = known.walls.room - slack * min(FENCE_SLACK, known.walls.room)
+    cut = gaps < room + extra[:, None]
+    if not cut.any():
+        return None
+    leg = int(legs[cut.any(axis=1)].min())
+    on_leg = (legs == leg) & cut.any(axis=1)
+    crossed = known.walls.segments[cut[on_leg].any(axis=0)].reshape(-1, 2)
+    near = distances(known.centres, crossed).min(axis=1, initial=math.inf) < 1.0
+    rows = np.flatnonzero((known.ids == FENCE) & near)
+    rows = rows[np.argsort(point_distances(known.centres[rows], points[0]), kind="stable")]
+    begin = len(points) - 1 - (int(legs.max()) + 1 - leg)
+    ahead = _length(points[: begin + 1]) + _reached_after(points[begin], points[begin + 1], known.walls)
+    threat = Threat(
+        ids=(FENCE,),
+        leg=leg,
+        distance=ahead,
+        time=ahead / max(own.ground_speed, 1.0),
+        clearance=float(gaps[on_leg].min()),
+        required=known.walls.room,
+    )
+    return Blocked(threat, leg, rows)
+
+
+def _reached_after(begin: Floats, end: Floats, walls: Walls) -> float:
+    """How far along a segment the walls come too near, to within `FENCE_STEP` [m]."""
+    length = float(np.hypot(*(end - begin)))
+    along = np.arange(0.0, length + FENCE_STEP, FENCE_STEP)
+    places = begin + np.minimum(along, length)[:, None] * (end - begin) / max(length, 1e-9)
+    close = np.flatnonzero(walls.clearance(places[:-1], places[1:]) < walls.room)
+    return float(along[close[0]]) if len(close) else length
 
 
 def altitude_bands(own: Ownship, route: Route) -> dict[tuple[float, float], list[int]]:

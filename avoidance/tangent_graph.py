@@ -14,6 +14,8 @@ import math
 import numpy as np
 
 from avoidance.arcs import STRIDE, TAU, admit, checked_discs, covered_arcs, uncovered
+from avoidance.barriers import Barriers
+from avoidance.geofence import Walls
 from avoidance.geometry import Point
 from avoidance.path import TOUCH, Path, clear
 from avoidance.tangents import Tangents, common_tangents, unobstructed
@@ -28,7 +30,9 @@ NEAR = 2.0
 """With the discs that the path cuts come those nearer to it than this many radii: fewer rounds."""
 
 
-def shortest_path(start: Point, goal: Point, centres: Floats, radii: Floats) -> Path | None:
+def shortest_path(
+    start: Point, goal: Point, centres: Floats, radii: Floats, walls: Walls | None = None
+) -> Path | None:
     """Find the shortest path that enters no disc.
 
     Parameters
@@ -39,11 +43,14 @@ def shortest_path(start: Point, goal: Point, centres: Floats, radii: Floats) -> 
         Centres of the discs (north, east) [m], shape (n, 2).
     radii : Floats
         Their radii [m], shape (n,), zero or more; discs may overlap, contain or equal one another.
+    walls : Walls, optional
+        Segments that the path keeps `walls.room` from, less where start or goal is nearer. The discs must
+        hold one of that radius about each end round which the path may bend.
 
     Returns
     -------
     Path or None
-        The shortest path; None if the discs leave no way.
+        The shortest path; None if discs and walls leave no way.
 
     Raises
     ------
@@ -61,15 +68,19 @@ def shortest_path(start: Point, goal: Point, centres: Floats, radii: Floats) -> 
     named = {"start": (ends[0, 0], ends[0, 1]), "goal": (ends[1, 0], ends[1, 1])}
     sizes = admit(named, world, sizes)
     origin = ends.mean(axis=0)
-    graph = _Graph(ends - origin, world - origin, sizes)
+    barriers = Barriers.of(walls, ends, origin)
+    graph = _Graph(ends - origin, world - origin, sizes, barriers)
     path = graph.straight()
     waiting = sizes > 0.0
+    posts = waiting & barriers.at_ends(graph.world)
+    barred = not barriers.clear(path.points[:1], path.points[1:])[0]
     while True:
         clearance = path.clearance(graph.world)
-        if not (waiting & (clearance < sizes * (1.0 - TOUCH))).any():
+        if not barred and not (waiting & (clearance < sizes * (1.0 - TOUCH))).any():
             return Path(path.length, path.points + origin, path.discs, path.sweeps, world, sizes)
-        near = waiting & (clearance < sizes * NEAR)
+        near = (waiting & (clearance < sizes * NEAR)) | posts
         waiting &= ~near
+        posts, barred = np.zeros_like(posts), False
         graph.add(np.flatnonzero(near))
         found = graph.search()
         if found is None:
@@ -80,8 +91,9 @@ def shortest_path(start: Point, goal: Point, centres: Floats, radii: Floats) -> 
 class _Graph:
     """The tangent graph of the discs added so far; discs are numbered from 2, after start and goal."""
 
-    def __init__(self, ends: Floats, world: Floats, sizes: Floats) -> None:
+    def __init__(self, ends: Floats, world: Floats, sizes: Floats, barriers: Barriers) -> None:
         self.world, self.sizes = world, sizes
+        self.barriers = barriers
         self.members = np.array([-1, -1], dtype=np.int64)  # number in the world of each disc of the graph
         self.centres, self.radii = ends, np.zeros(2)
         self.arcs = uncovered(2)
@@ -95,11 +107,14 @@ class _Graph:
         self.centres = np.concatenate([self.centres, self.world[discs]])
         self.radii = np.concatenate([self.radii, self.sizes[discs]])
         inner = self.radii * (1.0 - TOUCH)
-        self.arcs = covered_arcs(self.centres, self.radii, self.radii * (1.0 - 2.0 * TOUCH))
+        barred = self.barriers.arcs(self.centres, self.radii) if len(self.barriers) else None
+        self.arcs = covered_arcs(self.centres, self.radii, self.radii * (1.0 - 2.0 * TOUCH), barred=barred)
         fresh, every = np.arange(old, new), np.arange(2, new)
         first, second = np.nonzero(np.arange(new)[:, None] < fresh)
         tangents = self._uncovered(common_tangents(first, fresh[second], self.centres, self.radii))
         tangents = tangents.take(unobstructed(tangents, every, self.centres[2:], inner[2:]))
+        if len(self.barriers):
+            tangents = tangents.take(self.barriers.clear(tangents.point, tangents.end))
         if len(self.tangents):
             kept = self._uncovered(self.tangents)
             kept = kept.take(unobstructed(kept, fresh, self.centres[old:], inner[old:]))

@@ -199,7 +199,7 @@ class Rung(Enum):
     ROUTE = "route"
     """Several waypoints, from the exact planner."""
     ORBIT = "orbit"
-    """No way is known: wait in an orbit on the side with more room."""
+    """No way is known: wait in an orbit."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -254,7 +254,7 @@ class Reroute(Decision):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Hold(Decision):
-    """Orbit on the side with more room until a way opens."""
+    """Orbit in space proven free until a way opens."""
 
     centre: Waypoint
     """Centre of the orbit."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from itertools import pairwise
 
+from avoidance.geofence import FENCE
 from avoidance.ladder import Plan
 from avoidance.types import Rung, Threat, Waypoint
 
@@ -18,6 +19,9 @@ GIVEN_UP = {
 
 def obstacles(ids: tuple[int, ...]) -> str:
     """ "obstacle 3" or "obstacles 3, 4 and 5" (at most four are named)."""
+    if FENCE in ids:
+        others = tuple(i for i in ids if i != FENCE)
+        return f"the geofence and {obstacles(others)}" if others else "the geofence"
     if len(ids) == 1:
         return f"obstacle {ids[0]}"
     named = [str(i) for i in ids[:4]]

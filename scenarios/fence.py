@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,6 +13,9 @@ from avoidance.types import Bools, Floats
 from offboard.frames import MapFrame
 from offboard.geofence import FenceCircle, FencePolygon, FenceType, GeofenceData
 from scenarios.track import Track
+
+if TYPE_CHECKING:
+    from avoidance.geofence import Geofence
 
 Place = tuple[float, float]
 LEAST = 1e-9
@@ -119,6 +123,13 @@ def geofence_data(areas: Sequence[FenceArea], frame: MapFrame) -> GeofenceData:
             if a.centre is not None and a.radius is not None
         ),
     )
+
+
+def core_fence(areas: Sequence[FenceArea]) -> Geofence:
+    """The fence as the avoidance core takes it, which keeps it by code of its own."""
+    from avoidance import geofence as core  # noqa: PLC0415
+
+    return core.Geofence([core.FenceArea(a.include, a.corners, a.centre, a.radius) for a in areas])
 
 
 def _near_an_edge(track: Track, areas: Sequence[FenceArea]) -> Bools:

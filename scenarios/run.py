@@ -12,6 +12,7 @@ from offboard.frames import MapFrame
 from offboard.link import Vehicle
 from offboard.pilot import Agent, Frame, Pilot, fly
 from scenarios.errors import ScenarioError
+from scenarios.fence import core_fence
 from scenarios.flown import Flown, FlownVehicle, LoggedDecision, WallTime
 from scenarios.movers import Flyer, Mover
 from scenarios.pilots import Desk, FaultyPilot, Navigation
@@ -147,7 +148,8 @@ class Flight:
             from avoidance.agent import Agent as Core  # noqa: PLC0415
 
             told, way = way_of(informed(self._parameters, self._scenario.radar))
-            core = Core(vehicle.performance, told, generators["planner"], way)
+            fence = core_fence(self._scenario.geofence)
+            core = Core(vehicle.performance, told, generators["planner"], way, fence)
         agent = WatchedAgent(core)
         pilot = Pilot(vehicle, radar, agent)
         if settings.position_error > 0.0 or settings.decision_latency > 0.0:

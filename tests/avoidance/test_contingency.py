@@ -27,9 +27,7 @@ def seen(obstacles: list[tuple[float, float]], own: Ownship, way: Route) -> Know
 
 def test_in_the_open_the_orbit_is_wide_and_touches_the_course_one_roll_time_ahead() -> None:
     own = ownship()
-    orbit = orbit_from_here(
-        own, seen([(9000.0, 0.0)], own, route((40_000.0, 0.0))).circles(200, 200), PERFORMANCE
-    )
+    orbit = orbit_from_here(own, seen([(9000.0, 0.0)], own, route((40_000.0, 0.0))), PERFORMANCE)
     assert orbit.clearance > 0.0
     assert orbit.radius == pytest.approx(1.5 * PERFORMANCE.turn_radius)
     assert orbit.centre[0] == pytest.approx(PERFORMANCE.airspeed * PERFORMANCE.roll_time)
@@ -39,7 +37,7 @@ def test_in_the_open_the_orbit_is_wide_and_touches_the_course_one_roll_time_ahea
 @pytest.mark.parametrize(("side", "direction"), [(-1.0, 1), (1.0, -1)])
 def test_the_orbit_is_begun_away_from_what_is_near(side: float, direction: int) -> None:
     own = ownship()
-    near = seen([(0.0, side * 1060.0)], own, route((40_000.0, 0.0))).circles(200, 200)
+    near = seen([(0.0, side * 1060.0)], own, route((40_000.0, 0.0)))
     orbit = orbit_from_here(own, near, PERFORMANCE)
     assert orbit.clearance >= 0.0
     assert orbit.direction == direction
@@ -52,7 +50,7 @@ def test_between_two_spheres_an_orbit_needs_its_reach_to_both_sides(more: float,
     lead = PERFORMANCE.airspeed * PERFORMANCE.roll_time
     own = ownship(north=-lead, east=-aside)
     walls = seen([(0.0, -half - 1000.0 - more), (0.0, half + 1000.0 + more)], own, route((40_000.0, 0.0)))
-    assert (orbit_from_here(own, walls.circles(200, 200), PERFORMANCE).clearance >= 0.0) == free
+    assert (orbit_from_here(own, walls, PERFORMANCE).clearance >= 0.0) == free
 
 
 @pytest.mark.parametrize(
