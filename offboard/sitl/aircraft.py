@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from enum import Enum
 from typing import Protocol
 
@@ -15,6 +16,12 @@ from offboard.sitl.flight import AHEAD, Course
 
 ORBIT_TURN_RADII = 1.5
 """Least radius of a circle, in turn radii at the bank limit."""
+LARGEST_ORBIT = 10_000.0
+"""No circle is flown wider than this [m]."""
+LOWEST, HIGHEST = -500.0, 15_000.0
+"""Altitudes above home that can be asked for [m]."""
+SPEEDS = (0.8, 1.6)
+"""Least and greatest airspeed that can be asked for, in cruise airspeeds."""
 ON_GROUND = 0.5
 """Lower than this above home, coming down, an aircraft has landed [m]."""
 
@@ -136,14 +143,25 @@ class Aircraft:
             self.aim = None
 
     def fly(self, aim: Orbit | Course) -> None:
-        """Fly a leg or a circle; the plant is told only if it is another one."""
+        """Fly a leg or a circle, within what can be flown; the plant is told only if it is another one."""
         if aim == self.aim:
             return
         self.aim = aim
         if isinstance(aim, Orbit):
-            aim.command(self.plant, self.airspeed)
+            bounded = replace(aim, altitude=_within(aim.altitude, LOWEST, HIGHEST))
+            bounded.command(self.plant, self.speed(self.airspeed))
         else:
-            self.plant.fly_leg(*aim)
+            altitude = _within(aim[4], LOWEST, HIGHEST)
+            self.plant.fly_leg(aim[0], aim[1], aim[2], aim[3], altitude, self.speed(aim[5]))
+
+    def speed(self, wanted: float) -> float:
+        """The airspeed that is flown when this one is asked for [m/s]."""
+        cruise = self.performance.airspeed
+        return _within(wanted, SPEEDS[0] * cruise, SPEEDS[1] * cruise)
+
+    def orbit_radius(self, wanted: float) -> float:
+        """The radius that is flown when this one is asked for [m]."""
+        return _within(abs(wanted), self.least_orbit, LARGEST_ORBIT)
 
     def circle(self) -> Orbit:
         """A right-hand circle that begins here."""
@@ -156,3 +174,7 @@ class Aircraft:
         end = (state.north + AHEAD * math.cos(course), state.east + AHEAD * math.sin(course))
         at = state.altitude if altitude is None else altitude
         return (state.north, state.east, *end, at, self.airspeed)
+
+
+def _within(value: float, low: float, high: float) -> float:
+    return min(max(value, low), high)

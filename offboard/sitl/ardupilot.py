@@ -121,6 +121,7 @@ ARDUPILOT = Flavour(
         Say.LANDED: (6, "Flare complete"),
         Say.GAVE_UP: (4, "Mission upload timeout"),
     },
+    fixed_rates=frozenset(),
     most_items=724,
     target_frame=mavlink.MAV_FRAME_GLOBAL,
     target_mask=65016,

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from offboard.framing import Framer
 from offboard.link import VehicleState
 from offboard.signing import Sender, SigningPipe
-from offboard.sitl.aircraft import Aircraft
+from offboard.sitl.aircraft import HIGHEST, LOWEST, Aircraft
 from offboard.sitl.ardupilot import ARDUPILOT, MISSION_TOTAL
 from offboard.sitl.captain import Captain
 from offboard.sitl.commands import Command, Commands
@@ -226,6 +226,19 @@ class Autopilot:
         """Seq of the item that is flown to."""
         return self.captain.current
 
+    def too_far(self, item: WireItem) -> int | None:
+        """The MAV_MISSION_RESULT for an item that lies out of reach; None if it does not."""
+        frame = self.aircraft.frame
+        if not item.has_place:
+            return None
+        if not LOWEST <= item.above_home(frame.altitude_m) <= HIGHEST:
+            return int(mavlink.MAV_MISSION_INVALID_PARAM7)
+        try:
+            frame.to_map(item.latitude_deg, item.longitude_deg)
+        except ValueError:
+            return int(mavlink.MAV_MISSION_INVALID_PARAM5_X)
+        return None
+
     def uploaded(self, items: Sequence[WireItem], flagged: int | None) -> None:
         """A mission has come in as a whole."""
         self.captain.take_mission(items, flagged)
@@ -254,7 +267,7 @@ class Autopilot:
 
     def set_interval(self, link: int, message_id: int, interval: float) -> bool:
         """Send a message every so often [s], 0 as usual, negative never; False if there is none such."""
-        if message_id not in SECONDS:
+        if message_id not in SECONDS or message_id in self.flavour.fixed_rates:
             return False
         streams = self._link(link).streams
         if interval == 0.0:
@@ -336,7 +349,7 @@ class Autopilot:
         if not is_item or not self.flavour.home_item or message.current not in (2, 3):
             return False
         item, header = WireItem.of(message), message.get_header()
-        result = item.problem(MISSION, nan_allowed=False)
+        result = item.problem(MISSION, nan_allowed=False) or self.too_far(item)
         if result is None:
             open_place = message.current == 3
             place = (math.nan, math.nan) if open_place else (item.latitude_deg, item.longitude_deg)

@@ -154,7 +154,7 @@ class Captain:
     def go_to(self, place: Waypoint, radius: float | None, direction: int) -> None:
         """Fly to a place and circle about it."""
         wanted = self._parameters[self.flavour.roles[Role.LOITER]] if radius is None else radius
-        orbit = Orbit.about(place, max(wanted, self.aircraft.least_orbit), direction)
+        orbit = Orbit.about(place, self.aircraft.orbit_radius(wanted), direction)
         self._enter(self.flavour.mode_for(Task.GUIDED), orbit)
 
     def set_speed(self, airspeed: float | None) -> None:
@@ -171,6 +171,8 @@ class Captain:
         self._complete = False
         self.flight.plan = self._plan()
         self._begin(seq)
+        if self.mode.task is Task.MISSION:
+            self._announce(self.current)
         return True
 
     def take_mission(self, items: Sequence[WireItem], flagged: int | None) -> None:
@@ -227,7 +229,7 @@ class Captain:
             self.aircraft.launch()
             if self.aircraft.starts_on_ground:
                 self._say(Say.TAKEOFF)
-            self._enter(self.mode, self._orbit)
+            self._begin_task(self._orbit)
 
     def _aim(self) -> Orbit | Course | None:
         """What the aircraft is to fly now."""
@@ -273,24 +275,30 @@ class Captain:
     def _enter(self, mode: Mode, orbit: Orbit | None = None) -> None:
         """Go into a mode, or begin it again."""
         self.mode = mode
-        self._orbit = orbit
+        self._begin_task(orbit)
+        if mode.task is Task.MISSION:
+            self._say(Say.MISSION_MODE)
+            if (leg := self.flight.leg) is not None:
+                self._announce(leg.seq)
+
+    def _begin_task(self, orbit: Orbit | None = None) -> None:
+        """Begin what the mode is for, from here."""
+        task = self.mode.task
+        self._orbit = self._orbit_of(task) if orbit is None else orbit
         self._climb = None
         self.aircraft.aim = None
         self.aircraft.airspeed = self._speed or self._cruise()
-        if orbit is None:
-            self._orbit = self._orbit_of(mode.task)
-        if mode.task is Task.TAKEOFF:
+        if task is Task.TAKEOFF:
             height = self.takeoff_altitude or self._parameters[self.flavour.roles[Role.TAKEOFF]]
             self._climb = self.aircraft.ahead(max(height, self.aircraft.state.altitude))
-        if mode.task is Task.MISSION:
+        if task is Task.MISSION:
             self._complete = False
             self.flight.plan = self._plan()
             self._begin(self.current)
-            self._say(Say.MISSION_MODE)
 
     def _orbit_of(self, task: Task) -> Orbit | None:
         """The circle that belongs to a mode, begun here."""
-        radius = max(self._parameters[self.flavour.roles[Role.LOITER]], self.aircraft.least_orbit)
+        radius = self.aircraft.orbit_radius(self._parameters[self.flavour.roles[Role.LOITER]])
         here = Orbit.from_here(self.aircraft.state, radius)
         match task:
             case Task.HOLD | Task.GUIDED:
@@ -307,9 +315,7 @@ class Captain:
         self.current = max(seq, self.first) if self.items else 0
         self.flight.begin(self.current, self.aircraft.state)
         leg = self.flight.leg
-        if leg is not None and self.mode.task is Task.MISSION:
-            self._announce(leg.seq)
-        elif leg is not None and not self.flavour.home_item:
+        if leg is not None and (self.mode.task is Task.MISSION or not self.flavour.home_item):
             self.current = leg.seq
 
     def _announce(self, seq: int) -> None:
@@ -343,7 +349,7 @@ class Captain:
             airspeed=self._cruise(),
             acceptance_radius=self._parameters[self.flavour.roles[Role.ACCEPTANCE]],
             orbit_radius=self._parameters[self.flavour.roles[Role.LOITER]],
-            least_orbit=self.aircraft.least_orbit,
+            limit_radius=self.aircraft.orbit_radius,
         )
         return Plan.of(self.items, self.first, self.aircraft.frame, defaults)
 

@@ -74,6 +74,8 @@ class Flavour:
     """Names of the parameters that this simulation acts on."""
     texts: Mapping[Say, tuple[int, str]]
     """Severity and text of what it tells; an event without text is not told."""
+    fixed_rates: frozenset[int]
+    """Messages whose rate it does not let anyone set."""
     most_items: int
     """Longest mission."""
     target_frame: int

@@ -56,7 +56,8 @@ class MissionFlight:
     @property
     def stays(self) -> bool:
         """True at the end of a mission that ends in a circle."""
-        return self.circling and math.isinf(self._progress.loiter_until or 0.0)
+        leg = self.leg
+        return leg is not None and leg.kind is Kind.CIRCLE and self.circling
 
     def begin(self, seq: int, state: PlantState) -> None:
         """Fly to item `seq`, or the next one that is flown, from here."""
@@ -103,9 +104,9 @@ class MissionFlight:
             return None
         end = leg.target.waypoint
         if leg.kind is Kind.LAND:
-            away = math.hypot(end.north - state.north, end.east - state.east)
-            glide = end.altitude + away * math.tan(GLIDE_SLOPE)
-            return (*self._line(leg), min(glide, max(state.altitude, end.altitude)), leg.target.airspeed)
+            line = self._line(leg)
+            altitude = end.altitude + _left(line, state) * math.tan(GLIDE_SLOPE)
+            return (*line, min(altitude, max(state.altitude, end.altitude)), leg.target.airspeed)
         if self.circling:
             return Orbit.about(end, leg.radius, leg.direction)
         return (*self._line(leg), end.altitude, leg.target.airspeed)
@@ -154,3 +155,10 @@ class MissionFlight:
 
 def _place(state: PlantState) -> tuple[float, float, float]:
     return state.north, state.east, state.altitude
+
+
+def _left(line: tuple[float, float, float, float], state: PlantState) -> float:
+    """Distance still to go along a line [m]; negative beyond its end."""
+    from_north, from_east, to_north, to_east = line
+    course = math.atan2(to_east - from_east, to_north - from_north)
+    return (to_north - state.north) * math.cos(course) + (to_east - state.east) * math.sin(course)

@@ -61,8 +61,8 @@ FENCE = {
     mavlink.MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION,
 }
 RALLY = {mavlink.MAV_CMD_NAV_RALLY_POINT}
-HIGHEST = 20_000.0
-"""No item lies higher or, below home, deeper than this [m]."""
+FURTHEST_UP = 1e5
+"""No altitude is beyond this, up or down [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +146,7 @@ class WireItem:
         for value, limit, wrong in (
             (self.x, 90e7, mavlink.MAV_MISSION_INVALID_PARAM5_X),
             (self.y, 180e7, mavlink.MAV_MISSION_INVALID_PARAM6_Y),
-            (self.z, HIGHEST, mavlink.MAV_MISSION_INVALID_PARAM7),
+            (self.z, FURTHEST_UP, mavlink.MAV_MISSION_INVALID_PARAM7),
         ):
             if not abs(value) <= limit:
                 return int(wrong)

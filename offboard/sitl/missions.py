@@ -29,6 +29,9 @@ class Owner(Protocol):
     def current_item(self) -> int:
         """Seq of the item that is flown to."""
 
+    def too_far(self, item: WireItem) -> int | None:
+        """The MAV_MISSION_RESULT for an item that lies out of reach; None if it does not."""
+
     def uploaded(self, items: Sequence[WireItem], flagged: int | None) -> None:
         """A mission has come in as a whole."""
 
@@ -111,7 +114,7 @@ class MissionProtocol:
     def step(self, now: float) -> None:
         """Ask again for an item that does not come; give up after a while."""
         upload = self._upload
-        if upload is None or now < upload.asked_at + self._retry:
+        if upload is None or now < upload.asked_at + self._retry - 1e-9:
             return
         if upload.attempts >= MOST_ATTEMPTS:
             self._upload = None
@@ -173,7 +176,7 @@ class MissionProtocol:
         if seq != upload.next:
             return  # a copy, or one that has overtaken another; what is wanted is asked for again
         item = WireItem.of(message)
-        problem = item.problem(kind, nan_allowed=self._flavour.atomic)
+        problem = item.problem(kind, nan_allowed=self._flavour.atomic) or self._owner.too_far(item)
         if problem is not None:
             self._refuse(upload, problem)
             return

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 
@@ -52,8 +52,8 @@ class Defaults:
     """[m]"""
     orbit_radius: float
     """[m]"""
-    least_orbit: float
-    """No circle is flown narrower than this [m]."""
+    limit_radius: Callable[[float], float]
+    """From the radius of a circle as given to the one flown [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +115,7 @@ def _leg(
         place = Waypoint(end.north, end.east, altitude)
     given = item.param2 if item.command == mavlink.MAV_CMD_NAV_LOITER_TO_ALT else item.param3
     wanted = given if abs(given) > 0.0 and item.command in _CIRCLED else defaults.orbit_radius
-    radius = max(abs(wanted), defaults.least_orbit)
+    radius = defaults.limit_radius(wanted)
     acceptance = defaults.acceptance_radius
     if item.command == mavlink.MAV_CMD_NAV_WAYPOINT and item.param2 > 0.0:
         acceptance = item.param2

@@ -120,6 +120,7 @@ PX4 = Flavour(
         Say.LANDED: (6, "Landing detected\t"),
         Say.GAVE_UP: (2, "Operation timeout\t"),
     },
+    fixed_rates=frozenset({mavlink.MAVLINK_MSG_ID_MISSION_CURRENT}),
     most_items=2000,
     target_frame=mavlink.MAV_FRAME_GLOBAL_INT,
     target_mask=0,

@@ -126,10 +126,10 @@ class Station:
         return next(m for m in reversed(self.seen) if m.get_type() == name)
 
 
-def ready(kind="px4", **settings):
+def ready(kind="px4", plant=None, **settings):
     """A station and an autopilot that is flying the small mission."""
     changes = {"MIS_TKO_LAND_REQ": 0.0} if kind == "px4" else {}
-    station = Station(autopilot(kind, parameters=changes, **settings))
+    station = Station(autopilot(kind, plant=plant, parameters=changes, **settings))
     station.fly(0.1)
     assert station.upload(mission(kind))[0] == 0
     assert station.start(kind) == (0, 0)
