@@ -157,8 +157,8 @@ def _checked(document: Mapping[str, Any], fmu: Path, description: Any, mistakes:
     """The mapping; what is wrong with it goes to the list of mistakes."""
     known = {variable.name: variable.causality for variable in description.modelVariables}
     commands = (*COMMAND_ROLES, *OPTIONAL_COMMAND)
-    state = dict(_roles(document, "state", STATE_ROLES, OPTIONAL_STATE, known, mistakes))
-    command = dict(_roles(document, "command", commands, OPTIONAL_COMMAND, known, mistakes))
+    state = dict(read_roles(document, "state", STATE_ROLES, OPTIONAL_STATE, known, mistakes))
+    command = dict(read_roles(document, "command", commands, OPTIONAL_COMMAND, known, mistakes))
     for role, found in command.items():
         if (causality := known[found.variable]) != "input":
             mistakes.append(f"command.{role}.variable = {found.variable!r} is no input but {causality}")
@@ -178,7 +178,7 @@ def _checked(document: Mapping[str, Any], fmu: Path, description: Any, mistakes:
     return PlantMapping(fmu, start, state, command, numbers, description, initial, limits)
 
 
-def _roles(
+def read_roles(
     document: Mapping[str, Any],
     table: str,
     roles: Sequence[str],

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scenarios import __version__, compare_commands, fmu_commands, sitl_commands
+from scenarios import __version__, compare_commands, fmu_commands, hil_commands, sitl_commands
 from scenarios.command_errors import INTERRUPTED, OK, UNSAFE, expected_errors
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ app = typer.Typer(
     add_completion=False,
 )
 app.add_typer(fmu_commands.app)
+app.add_typer(hil_commands.app)
 app.command()(compare_commands.compare)
 app.command()(sitl_commands.sitl)
 

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from offboard.hil.errors import AirframeError
+from offboard.hil.errors import OptionError
 from offboard.hil.plant import Axes
 
 FOLDER = Path(__file__).parent / "airframes"
@@ -142,23 +142,23 @@ def load_airframe(name: str) -> Airframe:
 
     Raises
     ------
-    AirframeError
+    OptionError
         If there is none, or with every mistake in the file.
     """
     path = Path(name) if name.endswith(".toml") else _packaged().get(name)
     if path is None:
-        raise AirframeError(
+        raise OptionError(
             "airframe", [f"{name!r} is unknown; known: {', '.join(airframe_names())}, or FILE.toml"]
         )
     try:
         with path.open("rb") as stream:
             document = tomllib.load(stream)
     except (OSError, tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise AirframeError(path, [str(error)]) from error
+        raise OptionError(path, [str(error)]) from error
     mistakes: list[str] = []
     airframe = _checked(document, name, mistakes)
     if mistakes:
-        raise AirframeError(path, mistakes)
+        raise OptionError(path, mistakes)
     return airframe
 
 

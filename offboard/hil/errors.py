@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from offboard.errors import LinkError, OffboardError
 
 
-class AirframeError(OffboardError):
-    """A file of channels is unusable, or an option of the sensors; lists every mistake."""
+class OptionError(OffboardError):
+    """Something the user has given cannot be used; lists every mistake in it."""
 
     def __init__(self, source: object, mistakes: Sequence[str]) -> None:
         super().__init__(f"{source}: " + "; ".join(mistakes))

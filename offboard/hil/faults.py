@@ -12,7 +12,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from offboard.hil.errors import AirframeError
+from offboard.hil.errors import OptionError
 
 FAULTS: Mapping[str, tuple[int, str]] = {
     "gps-lost": (0, "no fix, no satellites"),
@@ -51,13 +51,13 @@ def parse_faults(text: str, known: Mapping[str, tuple[int, str]] = FAULTS) -> tu
 
     Raises
     ------
-    AirframeError
+    OptionError
         With every part that cannot be understood.
     """
     mistakes: list[str] = []
     found = [_fault(part.strip(), known, mistakes) for part in text.split(";") if part.strip()]
     if mistakes:
-        raise AirframeError("--faults", mistakes)
+        raise OptionError("--faults", mistakes)
     return tuple(fault for fault in found if fault is not None)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 V1, V2 = 0xFE, 0xFD
 _SIGNED = 0x01
@@ -18,6 +18,41 @@ class Frame(NamedTuple):
     """Sender's system ID."""
     data: bytes
     """All of it, signature included."""
+
+    @property
+    def payload(self) -> bytes:
+        """The message's content, zeros at its end left out if version 2."""
+        begin = 10 if self.data[0] == V2 else 6
+        return self.data[begin : begin + self.data[1]]
+
+
+class Writer:
+    """MAVLink 2 frames from payloads in wire order; several times as fast as pymavlink's message objects.
+
+    Parameters
+    ----------
+    message, crc_extra : int
+        Message ID, and the constant that its checksum includes.
+    mav : pymavlink MAVLink
+        Gives system, component and the running sequence number.
+    """
+
+    def __init__(self, message: int, crc_extra: int, mav: Any) -> None:  # noqa: ANN401  (no types)
+        from pymavlink.dialects.v20 import common  # noqa: PLC0415  (slow import)
+
+        self._message = message.to_bytes(3, "little")
+        self._extra = bytes([crc_extra])
+        self._mav = mav
+        self._crc = common.x25crc
+
+    def frame(self, payload: bytes) -> bytes:
+        """The whole frame; zeros at the payload's end are not sent, as MAVLink 2 wants it."""
+        mav = self._mav
+        payload = payload.rstrip(b"\0") or b"\0"
+        body = bytes((len(payload), 0, 0, mav.seq, mav.srcSystem, mav.srcComponent)) + self._message + payload
+        mav.seq = (mav.seq + 1) % 256
+        crc: int = self._crc(body + self._extra).crc
+        return bytes((V2,)) + body + crc.to_bytes(2, "little")
 
 
 class Framer:

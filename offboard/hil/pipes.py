@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from typing import Any, Protocol, Self
 
 from offboard.errors import LinkError
-from offboard.hil.errors import LinkLost
+from offboard.hil.errors import LinkLost, OptionError
 
 _CHUNK = 65536
 _LINK = re.compile(r"udp(?:out)?:(?://)?(?P<host>[^:/]+):(?P<port>\d+)")
@@ -113,6 +113,8 @@ class SerialPipe:
 
     Raises
     ------
+    OptionError
+        If this is no device and baud rate.
     LinkError
         If it cannot be opened.
     """
@@ -122,7 +124,7 @@ class SerialPipe:
 
         device, colon, baud = spec.rpartition(":")
         if not colon or not baud.isdigit():
-            raise LinkError(f"--serial {spec!r} must be DEVICE:BAUD, such as /dev/ttyACM0:921600")
+            raise OptionError("--serial", [f"{spec!r} must be DEVICE:BAUD, such as /dev/ttyACM0:921600"])
         try:
             self._port: Any = serial.Serial(device, int(baud), timeout=0.0, write_timeout=1.0)
         except (OSError, ValueError) as error:
@@ -240,14 +242,14 @@ def parse_links(text: str) -> list[tuple[str, int]]:
 
     Raises
     ------
-    LinkError
+    OptionError
         If one cannot be understood.
     """
     addresses = []
     for part in (each.strip() for each in text.split(",")):
         match = _LINK.fullmatch(part)
         if match is None or not 0 < int(match["port"]) < 65536:
-            raise LinkError(f"--mission-link {part!r} must be udp://HOST:PORT, such as udp://127.0.0.1:14550")
+            raise OptionError("--mission-link", [f"{part!r} must be udp://HOST:PORT"])
         addresses.append((match["host"], int(match["port"])))
     return addresses
 

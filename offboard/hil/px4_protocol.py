@@ -9,20 +9,25 @@ the first HIL_ACTUATOR_CONTROLS; from then on one answers each HIL_SENSOR, with 
 from __future__ import annotations
 
 import math
+import struct
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from offboard.hil.framing import Frame, Framer
+from offboard.hil.framing import Frame, Framer, Writer
 from offboard.hil.geodesy import Place, true_north
 from offboard.hil.plant import Truth
 from offboard.hil.sensors import Fix, Reading
 
-HEARTBEAT, COMMAND_LONG, HIL_ACTUATOR_CONTROLS = 0, 76, 93
+HEARTBEAT, COMMAND_LONG, HIL_ACTUATOR_CONTROLS, HIL_SENSOR = 0, 76, 93, 107
 """Message IDs that a simulator looks at."""
 ARMED = 128
 """Bit of HIL_ACTUATOR_CONTROLS.mode."""
 LOCKSTEP = 1
 """Bit of HIL_ACTUATOR_CONTROLS.flags."""
+_SENSOR = struct.Struct("<Q13fIB")
+"""HIL_SENSOR in wire order: time, 13 measurements, fields_updated, id."""
+_ACTUATORS = struct.Struct("<QQ16fB")
+"""HIL_ACTUATOR_CONTROLS in wire order: time, flags, controls, mode."""
 _ZERO_CELSIUS = 273.15
 _GRAVITY = 9.80665
 _SEA_LEVEL = 101325.0
@@ -65,7 +70,7 @@ class Px4Link:
 
         self._common: Any = common
         self._out = common.MAVLink(None, srcSystem=system, srcComponent=component)
-        self._in = common.MAVLink(None)
+        self._sensor = Writer(HIL_SENSOR, common.MAVLink_hil_sensor_message.crc_extra, self._out)
         self._framer = Framer()
         self.broken = 0
         """Frames whose content could not be read."""
@@ -93,18 +98,17 @@ class Px4Link:
         return heard
 
     def _actuators(self, frame: Frame) -> Actuators | None:
-        try:
-            message = self._in.decode(bytearray(frame.data))
-        except self._common.MAVError:
+        payload = frame.payload
+        if len(payload) > _ACTUATORS.size:
             self.broken += 1
             return None
-        lockstep = bool(message.flags & LOCKSTEP)
-        return Actuators(message.time_usec, tuple(message.controls), bool(message.mode & ARMED), lockstep)
+        time_usec, flags, *controls, mode = _ACTUATORS.unpack(payload.ljust(_ACTUATORS.size, b"\0"))
+        return Actuators(time_usec, tuple(controls), bool(mode & ARMED), bool(flags & LOCKSTEP))
 
     def sensor(self, reading: Reading) -> bytes:
         """HIL_SENSOR: FRD, gauss, hectopascal, degrees Celsius."""
         r = reading
-        message = self._common.MAVLink_hil_sensor_message(
+        payload = _SENSOR.pack(
             round(r.time * 1e6),
             *r.accel,
             *r.gyro,
@@ -116,7 +120,7 @@ class Px4Link:
             r.updated,
             0,
         )
-        return bytes(message.pack(self._out))
+        return self._sensor.frame(payload)
 
     def gps(self, fix: Fix) -> bytes:
         """HIL_GPS; `eph` and `epv` are centimetres to PX4."""

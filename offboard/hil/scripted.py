@@ -135,11 +135,3 @@ class ScriptedPilot:
 
 def _clamp(value: float, limit: float) -> float:
     return min(max(value, -limit), limit)
-
-
-def euler(w: float, x: float, y: float, z: float) -> tuple[float, float, float]:
-    """Bank, pitch and heading [rad] of an attitude quaternion, body to north-east-down."""
-    bank = math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
-    pitch = math.asin(_clamp(2.0 * (w * y - x * z), 1.0))
-    heading = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
-    return bank, pitch, heading

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import math
 import socket
 from dataclasses import dataclass, field
 from typing import Any
 
+from offboard.hil.attitude import euler
 from offboard.hil.channels import Airframe
 from offboard.hil.json_protocol import Servos, pack_servos
 from offboard.hil.plant import NEUTRAL
-from offboard.hil.scripted import Believed, ScriptedPilot, euler
+from offboard.hil.scripted import Believed, ScriptedPilot
 
 FIELDS = {
     "timestamp": ("", 1),
@@ -128,9 +128,3 @@ def _believe(felt: dict[str, tuple[float, ...]]) -> Believed:
         felt["timestamp"][0], bank, pitch, heading, p, q, r,
         -felt["position"][2], -felt["velocity"][2], felt.get("airspeed", (0.0,))[0],
     )  # fmt: skip
-
-
-def bearing(text: dict[str, tuple[float, ...]]) -> float:
-    """Direction of travel over ground [rad]."""
-    north, east, _ = text["velocity"]
-    return math.atan2(east, north)

@@ -7,11 +7,12 @@ import socket
 from dataclasses import dataclass, field
 from typing import Any
 
+from offboard.hil.attitude import euler, quaternion
 from offboard.hil.channels import Airframe
 from offboard.hil.framing import Framer
 from offboard.hil.plant import NEUTRAL, Axes
 from offboard.hil.px4_protocol import ARMED, LOCKSTEP, pressure_altitude
-from offboard.hil.scripted import GRAVITY, Believed, ScriptedPilot, euler
+from offboard.hil.scripted import GRAVITY, Believed, ScriptedPilot
 
 HIL_SENSOR, HIL_GPS, HIL_STATE_QUATERNION = 107, 113, 115
 SEA_LEVEL_DENSITY = 1.225
@@ -71,15 +72,7 @@ class Estimator:
         bank = math.atan2(-force[1], -force[2])
         pitch = math.atan2(force[0], math.hypot(force[1], force[2]))
         heading = self._compass(bank, pitch, mag)
-        cr, sr = math.cos(bank / 2), math.sin(bank / 2)
-        cp, sp = math.cos(pitch / 2), math.sin(pitch / 2)
-        cy, sy = math.cos(heading / 2), math.sin(heading / 2)
-        self._attitude = (
-            cr * cp * cy + sr * sp * sy,
-            sr * cp * cy - cr * sp * sy,
-            cr * sp * cy + sr * cp * sy,
-            cr * cp * sy - sr * sp * cy,
-        )
+        self._attitude = quaternion(bank, pitch, heading)
         self.heading_known = True
 
     def _compass(self, bank: float, pitch: float, mag: tuple[float, float, float]) -> float:

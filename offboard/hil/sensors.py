@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from offboard.hil.attitude import to_body
 from offboard.hil.faults import Fault
 from offboard.hil.geodesy import Geodesy
 from offboard.hil.magnetic import Field, MagneticField
@@ -274,17 +275,6 @@ class Sensors:
             99.99 if lost else max(model.gps_vertical, 0.1),
             0 if lost else 12,
         )
-
-
-def to_body(truth: Truth, vector: tuple[float, float, float]) -> tuple[float, float, float]:
-    """A vector in map axes (north, east, down) as the body (forward, right, down) sees it."""
-    w, x, y, z = truth.qw, truth.qx, truth.qy, truth.qz
-    n, e, d = vector
-    return (
-        (1 - 2 * (y * y + z * z)) * n + 2 * (x * y + w * z) * e + 2 * (x * z - w * y) * d,
-        2 * (x * y - w * z) * n + (1 - 2 * (x * x + z * z)) * e + 2 * (y * z + w * x) * d,
-        2 * (x * z + w * y) * n + 2 * (y * z - w * x) * e + (1 - 2 * (x * x + y * y)) * d,
-    )
 
 
 def _normals(rng: np.random.Generator) -> Iterator[float]:

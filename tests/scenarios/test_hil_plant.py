@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from fmu.library import FmuLibrary
+from offboard.hil.attitude import euler, to_body
 from offboard.hil.plant import NEUTRAL, Axes, Phase
-from offboard.hil.scripted import Believed, ScriptedPilot, Task, euler
-from offboard.hil.sensors import to_body
+from offboard.hil.scripted import Believed, ScriptedPilot, Task
 from offboard.hil.simulation import LaunchRule, Simulation
 from scenarios.hil_plant import FmuHilPlant
 

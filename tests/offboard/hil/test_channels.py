@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from offboard.hil.channels import airframe_names, load_airframe
-from offboard.hil.errors import AirframeError
+from offboard.hil.errors import OptionError
 from offboard.hil.plant import NEUTRAL, Axes
 
 SHARE = st.floats(-1.0, 1.0)
@@ -87,12 +87,12 @@ def test_outputs_beyond_their_range_do_no_more_than_full():
 def test_a_bad_file_is_refused_with_every_mistake(text, words, tmp_path):
     file = tmp_path / "mine.toml"
     file.write_text(text)
-    with pytest.raises(AirframeError) as caught:
+    with pytest.raises(OptionError) as caught:
         load_airframe(str(file))
     for word in ["mine.toml", *words]:
         assert word in str(caught.value)
 
 
 def test_an_unknown_name_says_what_is_known():
-    with pytest.raises(AirframeError, match=r"'concorde' is unknown.*px4-10041"):
+    with pytest.raises(OptionError, match=r"'concorde' is unknown.*px4-10041"):
         load_airframe("concorde")

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from offboard.hil.errors import AirframeError
+from offboard.hil.errors import OptionError
 from offboard.hil.faults import Fault, parse_faults
 from offboard.hil.json_bridge import KNOWN_FAULTS
 
@@ -38,10 +38,10 @@ def test_while_it_lasts():
     ],
 )
 def test_mistakes_are_named(text, word):
-    with pytest.raises(AirframeError, match=word):
+    with pytest.raises(OptionError, match=word):
         parse_faults(text)
 
 
 def test_every_mistake_at_once_and_only_what_the_protocol_can_tell():
-    with pytest.raises(AirframeError, match=r"gps-lost.*mag-lost"):
+    with pytest.raises(OptionError, match=r"gps-lost.*mag-lost"):
         parse_faults("gps-lost@1; mag-lost@2", KNOWN_FAULTS)

@@ -12,7 +12,7 @@ from pymavlink.dialects.v20 import common
 from offboard.errors import LinkError
 from offboard.frames import MapFrame
 from offboard.hil.channels import load_airframe
-from offboard.hil.errors import LinkLost
+from offboard.hil.errors import LinkLost, OptionError
 from offboard.hil.framing import Framer
 from offboard.hil.geodesy import Geodesy
 from offboard.hil.magnetic import MagneticField
@@ -185,5 +185,5 @@ def test_mission_links():
         ("10.0.0.1", 14540),
     ]
     for text in ("14550", "tcp://127.0.0.1:1", "udp://127.0.0.1:99999", ""):
-        with pytest.raises(LinkError, match="mission-link"):
+        with pytest.raises(OptionError, match="mission-link"):
             parse_links(text)

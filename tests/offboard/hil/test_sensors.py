@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from offboard.frames import MapFrame
+from offboard.hil.attitude import to_body
 from offboard.hil.faults import parse_faults
 from offboard.hil.geodesy import Geodesy
 from offboard.hil.magnetic import MagneticField
-from offboard.hil.sensors import ACCEL, BARO, DIFFERENTIAL, GYRO, MAG, SensorModel, Sensors, to_body
+from offboard.hil.sensors import ACCEL, BARO, DIFFERENTIAL, GYRO, MAG, SensorModel, Sensors
 from tests.offboard.hil.fakes import AT_REST
 
 HOME = MapFrame(47.397742, 8.545594, 488.0)
