@@ -87,6 +87,9 @@ def load_hil_mapping(file: Path) -> HilMapping:
     known = {variable.name: variable.causality for variable in description.modelVariables}
     state = dict(read_roles(document, "state", STATE_ROLES, optional, known, mistakes))
     command = dict(read_roles(document, "command", COMMAND_ROLES, _OPTIONAL_COMMANDS, known, mistakes))
+    for name, role in command.items():
+        if (causality := known[role.variable]) != "input":
+            mistakes.append(f"command.{name}.variable = {role.variable!r} is no input but {causality}")
     for names in (_FORCE, _ATTITUDE, _QUATERNION):
         given = [name for name in names if name in document["state"]]
         if given and len(given) < len(names):

@@ -62,13 +62,13 @@ class SelfTest:
         return all(check.passed for check in self.checks)
 
 
-def fly_ardupilot(rig: Rig, seconds: float) -> SelfTest:
+def fly_ardupilot(rig: Rig, seconds: float, rate: int = 400) -> SelfTest:
     """Fly by ArduPilot's JSON protocol over UDP, both sides in turn in one thread."""
     recorder = HilRecorder(rig.faults)
     rig.simulation.watch = recorder
     port = UdpPort(0)
     bridge = rig.json_bridge(port)
-    autopilot = ScriptedArduPilot(port.port, rig.airframe)
+    autopilot = ScriptedArduPilot(port.port, rig.airframe, rate=rate)
     timing = rig.simulation.timing
     begun = Stopwatch()
     try:
@@ -142,7 +142,8 @@ def fly_real_time(rig: Rig, seconds: float) -> SelfTest:
         "real time",
         kept.late_share <= LATE_SHARE,
         f"{kept.late} of {kept.steps} steps more than {kept.period * 1e3:g} ms late "
-        f"({100 * kept.late_share:.3f} %, at most {100 * LATE_SHARE:g} %), worst {1e3 * kept.worst:.1f} ms; {urgent}",
+        f"({100 * kept.late_share:.3f} %, at most {100 * LATE_SHARE:g} %), worst {1e3 * kept.worst:.1f} ms; "
+        f"{urgent}",
     )
     enough = bridge.counts.answers > 0.8 * kept.steps - 250
     heard = Check("board", enough, f"{bridge.counts.answers} commands for {kept.steps} steps")

@@ -83,7 +83,6 @@ class ScriptedArduPilot:
         """Take a new socket, as a firmware that starts again does."""
         self.close()
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self._socket.connect(("127.0.0.1", self.port))
 
     def restart(self) -> None:
         """Begin at frame zero, from another port."""
@@ -98,7 +97,7 @@ class ScriptedArduPilot:
 
     def send(self, data: bytes | None = None) -> None:
         """Send the packet that is due, or these bytes."""
-        self._socket.send(self.packet() if data is None else data)
+        self._socket.sendto(self.packet() if data is None else data, ("127.0.0.1", self.port))
 
     def receive(self, timeout: float = 1.0) -> str | None:
         """Take an answer; None if none has come within `timeout` [s]."""
