@@ -169,7 +169,7 @@ def _checked(document: Mapping[str, Any], fmu: Path, description: Any, mistakes:
     modes = dict(_numbers(document, "mode", mistakes))
     mistakes += [f"mode.{name} is unknown; known: leg, orbit" for name in modes if name not in _MODES]
     numbers = {LEG: modes.get("leg", LEG), ORBIT: modes.get("orbit", ORBIT)}
-    initial = dict(_roles(document, "initial", INITIAL_ROLES, INITIAL_ROLES, known, mistakes))
+    initial = dict(read_roles(document, "initial", INITIAL_ROLES, INITIAL_ROLES, known, mistakes))
     for role, found in initial.items():
         if (causality := known[found.variable]) not in _SETTABLE:
             what = f"{found.variable!r} cannot be set before the start: it is {causality}"
