@@ -8,7 +8,9 @@ from pathlib import Path
 
 from fmu.cosimulation import read_description
 from fmu.emit import starts
-from fmu.variables import TABLE, UNITS, Variable
+from fmu.rows import Variable
+from fmu.units import UNITS
+from fmu.variables import TABLE
 from fmu.views import VIEWS
 
 _HEADINGS = {

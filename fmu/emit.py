@@ -6,7 +6,9 @@ from collections.abc import Mapping
 from xml.etree import ElementTree as ET
 
 from fmu.parameters import load_aircraft
-from fmu.variables import INDICATORS, REFERENCE, STATES, TABLE, UNITS, Variable
+from fmu.rows import Variable
+from fmu.units import UNITS
+from fmu.variables import INDICATORS, REFERENCE, STATES, TABLE
 from fmu.views import TERMINALS, VIEWS, View, members
 
 MODEL = "sidestep_aircraft"
@@ -48,27 +50,14 @@ def model_description(token: str) -> str:
     token : str
         Instantiation token, the same as in the library.
     """
-    root = ET.Element(
-        "fmiModelDescription",
-        fmiVersion="3.0",
-        modelName="SidestepAircraft",
-        instantiationToken=token,
-        description=DESCRIPTION,
-        generationTool="Sidestep fmu.build",
-        license="BSD-3-Clause",
-        variableNamingConvention="structured",
-    )
+    root = description_root("3.0", instantiationToken=token)
     can = dict.fromkeys(
         ("canGetAndSetFMUState", "canSerializeFMUState", "providesDirectionalDerivatives"), "true"
     )
     ET.SubElement(root, "ModelExchange", {"modelIdentifier": MODEL, **can})
     steps = ("canHandleVariableCommunicationStepSize", "hasEventMode", "mightReturnEarlyFromDoStep")
     ET.SubElement(root, "CoSimulation", {"modelIdentifier": MODEL, **can, **dict.fromkeys(steps, "true")})
-    add_units(ET.SubElement(root, "UnitDefinitions"))
-    categories = ET.SubElement(root, "LogCategories")
-    for name, text in CATEGORIES.items():
-        ET.SubElement(categories, "Category", name=name, description=text)
-    ET.SubElement(root, "DefaultExperiment", startTime="0", stopTime="60", stepSize=f"{STEP:g}")
+    add_preliminaries(root)
     table, values = ET.SubElement(root, "ModelVariables"), starts()
     for reference, row in enumerate(TABLE):
         _variable(table, reference, row, values)
@@ -76,6 +65,28 @@ def model_description(token: str) -> str:
         _array(table, reference, view, values)
     _structure(ET.SubElement(root, "ModelStructure"))
     return xml_text(root)
+
+
+def description_root(version: str, **more: str) -> ET.Element:
+    """The root of a `modelDescription.xml`: who made what; further attributes as given."""
+    facts = {
+        "fmiVersion": version,
+        "modelName": "SidestepAircraft",
+        "description": DESCRIPTION,
+        "generationTool": "Sidestep fmu.build",
+        "license": "BSD-3-Clause",
+        "variableNamingConvention": "structured",
+    }
+    return ET.Element("fmiModelDescription", facts | more)
+
+
+def add_preliminaries(root: ET.Element) -> None:
+    """What both versions have before the variables: units, log categories, the default experiment."""
+    add_units(ET.SubElement(root, "UnitDefinitions"))
+    categories = ET.SubElement(root, "LogCategories")
+    for name, text in CATEGORIES.items():
+        ET.SubElement(categories, "Category", name=name, description=text)
+    ET.SubElement(root, "DefaultExperiment", startTime="0", stopTime="60", stepSize=f"{STEP:g}")
 
 
 def build_description() -> str:

@@ -9,19 +9,18 @@ from collections.abc import Mapping
 from xml.etree import ElementTree as ET
 
 from fmu.emit import (
-    CATEGORIES,
-    DESCRIPTION,
     GENERATED,
     MODEL,
     SOURCES,
-    STEP,
-    add_units,
+    add_preliminaries,
     as_text,
+    description_root,
     real_facts,
     starts,
     xml_text,
 )
-from fmu.variables import INDICATORS, REFERENCE, STATES, TABLE, Variable
+from fmu.rows import Variable
+from fmu.variables import INDICATORS, REFERENCE, STATES, TABLE
 
 _KINDS = {"Float64": "Real", "Int32": "Integer", "Boolean": "Boolean"}
 
@@ -34,17 +33,7 @@ def model_description_fmi2(token: str) -> str:
     token : str
         The guid, the same as in the library.
     """
-    root = ET.Element(
-        "fmiModelDescription",
-        fmiVersion="2.0",
-        modelName="SidestepAircraft",
-        guid=token,
-        description=DESCRIPTION,
-        generationTool="Sidestep fmu.build",
-        license="BSD-3-Clause",
-        variableNamingConvention="structured",
-        numberOfEventIndicators=str(len(INDICATORS)),
-    )
+    root = description_root("2.0", guid=token, numberOfEventIndicators=str(len(INDICATORS)))
     can = ("canGetAndSetFMUstate", "canSerializeFMUstate", "providesDirectionalDerivative")
     for interface, more in (
         ("ModelExchange", ("completedIntegratorStepNotNeeded",)),
@@ -54,11 +43,7 @@ def model_description_fmi2(token: str) -> str:
         files = ET.SubElement(ET.SubElement(root, interface, facts), "SourceFiles")
         for name in (*SOURCES, GENERATED):
             ET.SubElement(files, "File", name=name)
-    add_units(ET.SubElement(root, "UnitDefinitions"))
-    categories = ET.SubElement(root, "LogCategories")
-    for name, text in CATEGORIES.items():
-        ET.SubElement(categories, "Category", name=name, description=text)
-    ET.SubElement(root, "DefaultExperiment", startTime="0", stopTime="60", stepSize=f"{STEP:g}")
+    add_preliminaries(root)
     table, values = ET.SubElement(root, "ModelVariables"), starts()
     for reference, row in enumerate(TABLE):
         _variable(table, reference, row, values)

@@ -7,10 +7,10 @@ from collections.abc import Mapping, Sequence
 from types import TracebackType
 from typing import Self
 
+from fmu.commands import LEG, ORBIT, check_direction, check_duration
 from fmu.cosimulation import CoSimulation
 from fmu.errors import PlantError
 from fmu.mapping import LEG_ROLES, ORBIT_ROLES, PlantMapping
-from fmu.plant import LEG, LONGEST_STEP, ORBIT
 from fmu.types import PlantState
 
 
@@ -87,8 +87,7 @@ class MappedPlant:
         self, north: float, east: float, radius: float, direction: int, altitude: float, airspeed: float
     ) -> None:
         """Circle a point [m]; direction +1 is clockwise seen from above, -1 anticlockwise."""
-        if direction not in (-1, 1):
-            raise ValueError(f"direction={direction!r}: must be +1 (clockwise) or -1")
+        check_direction(direction)
         self._command(ORBIT, ORBIT_ROLES, (north, east, radius, direction, altitude, airspeed))
 
     def set_wind(self, north: float, east: float, down: float = 0.0) -> None:
@@ -117,8 +116,7 @@ class MappedPlant:
         PlantError
             If the FMU fails.
         """
-        if not 0.0 < duration <= LONGEST_STEP:
-            raise ValueError(f"duration={duration!r}: must be within (0, {LONGEST_STEP:g}] s")
+        check_duration(duration)
         self._state = None
         self._unit.step(duration)
 

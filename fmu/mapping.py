@@ -33,10 +33,10 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
+from fmu.commands import LEG, ORBIT
 from fmu.cosimulation import read_description
 from fmu.errors import FmuError
 from fmu.mapped_limits import MappedLimits, read_limits
-from fmu.plant import LEG, ORBIT
 from fmu.types import PlantState
 
 STATE_ROLES = tuple(

@@ -8,7 +8,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from fmu.errors import AircraftError
-from fmu.variables import TABLE, Variable
+from fmu.rows import Variable
+from fmu.variables import TABLE
 
 FOLDER = Path(__file__).parent / "aircraft"
 DEFAULT = "skywalker_x8"

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from types import TracebackType
 from typing import Literal
 
+from fmu.commands import DIRECT, LEG, ORBIT, check_direction, check_duration
 from fmu.library import Channel, FmuLibrary
 from fmu.parameters import DEFAULT
 from fmu.saving import SavedPlant
@@ -16,10 +17,6 @@ Fidelity = Literal["6dof", "kinematic"]
 Law = Literal["l1", "paper"]
 FIDELITIES: dict[str, int] = {"6dof": 0, "kinematic": 1}
 LAWS: dict[str, int] = {"paper": 0, "l1": 1}
-DIRECT, LEG, ORBIT = 0, 1, 2
-"""Values of `command.mode`."""
-LONGEST_STEP = 3600.0
-"""Longest communication step the model accepts [s]."""
 
 _LEG = tuple(f"command.leg.{k}" for k in ("from_north", "from_east", "to_north", "to_east"))
 _HOLD = ("command.altitude", "command.airspeed")
@@ -168,8 +165,7 @@ class FmuPlant:
         self, north: float, east: float, radius: float, direction: int, altitude: float, airspeed: float
     ) -> None:
         """Circle a point [m]; direction +1 is clockwise seen from above, -1 anticlockwise."""
-        if direction not in (-1, 1):
-            raise ValueError(f"direction={direction!r}: must be +1 (clockwise) or -1")
+        check_direction(direction)
         command = (ORBIT, north, east, radius, altitude, airspeed, direction)
         if command != self._command:
             self._give(self._orbit, command[:-1], _ORBIT + _HOLD)
@@ -201,8 +197,7 @@ class FmuPlant:
         PlantError
             If the model fails.
         """
-        if not 0.0 < duration <= LONGEST_STEP:
-            raise ValueError(f"duration={duration!r}: must be within (0, {LONGEST_STEP:g}] s")
+        check_duration(duration)
         self._state = None
         self._instance.step(duration)
 

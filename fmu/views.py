@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from fmu.variables import REFERENCE, TABLE, Variable
+from fmu.rows import Variable
+from fmu.variables import REFERENCE, TABLE
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,8 @@ from xml.etree import ElementTree as ET
 
 from fmu.emit import build_description, c_header, c_tables, model_description, starts, terminals
 from fmu.emit_fmi2 import model_description_fmi2
-from fmu.variables import REFERENCE, STATES, TABLE, UNITS
+from fmu.units import UNITS
+from fmu.variables import REFERENCE, STATES, TABLE
 from fmu.views import TERMINALS, VIEWS
 
 
