@@ -19,6 +19,8 @@ from offboard.sitl.parameters import Parameters
 from offboard.sitl.plan import Defaults, Kind, Plan
 from offboard.sitl.px4 import LANDING_WANTED
 
+DOWN = -20.0
+"""Altitude that is asked for to come down to the ground [m]: it is approached ever more slowly."""
 ITEM_NAMES = {
     mavlink.MAV_CMD_NAV_WAYPOINT: "WP",
     mavlink.MAV_CMD_NAV_TAKEOFF: "Takeoff",
@@ -139,6 +141,7 @@ class Captain:
             return False
         if self.armed:
             self.armed = False
+            self.aircraft.aim = None
             self._say(Say.DISARMED)
         return True
 
@@ -235,7 +238,7 @@ class Captain:
         """What the aircraft is to fly now."""
         state = self.aircraft.state
         if not self.armed:
-            return self.aircraft.ahead(0.0) if self.aircraft.aim is None else None
+            return self.aircraft.ahead(DOWN) if self.aircraft.aim is None else None
         match self.mode.task:
             case Task.MISSION:
                 return self._mission_aim()
@@ -304,7 +307,7 @@ class Captain:
             case Task.HOLD | Task.GUIDED:
                 return here
             case Task.LAND:
-                return replace(here, altitude=0.0)
+                return replace(here, altitude=DOWN)
             case Task.RETURN:
                 height = self._parameters[self.flavour.roles[Role.RETURN]]
                 return Orbit(0.0, 0.0, max(height, 0.0) or here.altitude, radius)

@@ -96,7 +96,7 @@ def test_what_another_vehicle_tells_of_itself_is_not_ours():
     assert shown(ground.pilot) == before
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(st.sampled_from(KNOWN), st.data())
 def test_any_message_with_any_content_is_survived(number, data):
     """Every message of the dialect, its payload at random, addressed to us where it has an address."""
@@ -119,7 +119,7 @@ def test_any_message_with_any_content_is_survived(number, data):
     assert math.isfinite(state.altitude)
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(
     st.sampled_from(("px4", "ardupilot")),
     st.sampled_from((16, 17, 20, 21, 22, 176, 178, 179, 192, 193, 224, 246, 300, 400, 511, 512, 520, 65535)),
@@ -136,6 +136,7 @@ def test_commands_with_any_numbers_are_answered_and_survived(kind, number, value
     assert abs(state.north) < 1e4
 
 
+@settings(max_examples=40)
 @given(st.integers(0, 65535), st.lists(st.integers(0, 65535), max_size=6))
 def test_any_counts_and_sequences_leave_the_mission_whole(count, sequence):
     ground = Station(autopilot("px4"))
@@ -148,7 +149,7 @@ def test_any_counts_and_sequences_leave_the_mission_whole(count, sequence):
     assert len(ground.pilot.captain.items) in {0 if count == 0 else 3, count}
 
 
-@settings(max_examples=60)
+@settings(max_examples=30)
 @given(st.lists(ANY_FLOAT, min_size=3, max_size=3))
 def test_places_that_are_none_are_not_flown_to(values):
     ground = flying("ardupilot")
@@ -170,7 +171,7 @@ WILD_ITEMS = st.tuples(
 )
 
 
-@settings(max_examples=100)
+@settings(max_examples=40)
 @given(st.sampled_from(("px4", "ardupilot")), st.lists(WILD_ITEMS, min_size=1, max_size=6), st.integers(0, 6))
 def test_any_mission_is_refused_or_survived(kind, wild, current):
     """Zero-length legs, jumps to themselves, circles of no size, places at the other end of the world."""
