@@ -7,26 +7,25 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from offboard.framing import Framer
 from offboard.link import VehicleState
-from offboard.signing import Sender, SigningPipe
 from offboard.sitl.aircraft import HIGHEST, LOWEST, Aircraft
 from offboard.sitl.ardupilot import ARDUPILOT, MISSION_TOTAL
 from offboard.sitl.captain import Captain
 from offboard.sitl.commands import Command, Commands
-from offboard.sitl.dialect import Codec, Message, Packed, mavlink
+from offboard.sitl.dialect import Message, Packed, mavlink
 from offboard.sitl.flavour import Flavour, Role, Say
 from offboard.sitl.items import WireItem
+from offboard.sitl.links import Links
 from offboard.sitl.missions import MISSION, MissionProtocol
 from offboard.sitl.parameters import Parameters
 from offboard.sitl.px4 import PX4
-from offboard.sitl.telemetry import SECONDS, Streams, Telemetry
+from offboard.sitl.services import Handler, handlers
+from offboard.sitl.streams import SECONDS, Streams
+from offboard.sitl.telemetry import Telemetry
 
 FLAVOURS: dict[str, Flavour] = {"px4": PX4, "ardupilot": ARDUPILOT}
 """Autopilots by the name that users give."""
 AUTOPILOT = mavlink.MAV_COMP_ID_AUTOPILOT1
-LONGEST_QUEUE = 20_000
-"""Frames that wait for a link which nobody empties; older ones are dropped."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,27 +46,6 @@ class Settings:
     """Secret key: frames that are not signed with it are dropped, its own are signed."""
     signing_clock: Callable[[], float] = time.time
     """Unix time for signatures [s]: true time, however fast the simulation is."""
-
-
-class _Link:
-    """One way to the outside: its own frame numbers, streams and left-over bytes."""
-
-    def __init__(self, system_id: int, pipe: SigningPipe | None) -> None:
-        self.codec = Codec(system_id)
-        self.streams = Streams()
-        self.out: list[bytes] = []
-        self._framer = Framer(self.codec.decode)
-        self._pipe = pipe
-
-    def messages(self, data: bytes) -> list[Message]:
-        """What has come in."""
-        return self._framer.feed(data if self._pipe is None else self._pipe.verify(data))
-
-    def put(self, packed: Packed) -> None:
-        """Keep a message for the next time that somebody asks for what is to be sent."""
-        frame = self.codec.stamp(packed)
-        self.out.append(frame if self._pipe is None else self._pipe.sign(frame))
-        del self.out[:-LONGEST_QUEUE]
 
 
 class Autopilot:
@@ -101,25 +79,19 @@ class Autopilot:
         )
         self.captain = Captain(aircraft, self.flavour, self.parameters, self._say, self._item_reached)
         self.telemetry = Telemetry(self.captain, self.settings.start_time)
-        self._links: dict[int, _Link] = {}
-        self._heard: dict[Sender, int] = {}
-        self._missions = MissionProtocol(self.flavour, self, self._send, self.settings.retry)
+        self._links = Links(self.settings.system_id, self.settings.signing_key, self.settings.signing_clock)
+        self._missions = MissionProtocol(self.flavour, self, self._links.send, self.settings.retry)
         self._commands = Commands(self.captain, self, self._say)
         self._text_id = 0
         self._reached: tuple[int, int, float] | None = None
         self._shown: tuple[object, ...] = ()
         self._shown_aim: object = None
-        self._handlers: dict[str, Callable[[int, Message], None]] = {
+        self._handlers: dict[str, Handler] = {
             "COMMAND_LONG": self._command,
             "COMMAND_INT": self._command,
             "SET_MODE": self._set_mode,
             "MISSION_SET_CURRENT": self._set_current,
-            "PARAM_REQUEST_LIST": self._list_parameters,
-            "PARAM_REQUEST_READ": self._read_parameter,
-            "PARAM_SET": self._set_parameter,
-            "REQUEST_DATA_STREAM": self._data_stream,
-            "PING": self._ping,
-            "TIMESYNC": self._timesync,
+            **handlers(self._links, self.parameters, aircraft),
         }
         if self.flavour.home_item:
             self._store((self.home(),))
@@ -128,7 +100,7 @@ class Autopilot:
 
     def feed(self, data: bytes, link: int = 0) -> None:
         """Bytes that have come in on a link, whole frames or not, garbage or not."""
-        messages = self._link(link).messages(data)
+        messages = self._links[link].messages(data)
         for message in messages:
             self._handle(link, message)
         if messages:
@@ -147,7 +119,7 @@ class Autopilot:
         self._tell_changes()
         self._repeat_reached(now)
         made: dict[int, Packed | None] = {}
-        for link in self._links.values():
+        for link in self._links:
             for message_id in link.streams.due(now):
                 if message_id not in made:
                     message = self.telemetry.message(message_id)
@@ -161,24 +133,21 @@ class Autopilot:
 
     def frames(self, link: int = 0) -> list[bytes]:
         """The same, frame by frame."""
-        state = self._link(link)
+        state = self._links[link]
         out, state.out = state.out, []
         return out
 
     def open(self, link: int) -> None:
         """Begin to send on a link."""
-        self._link(link)
+        self._links[link]
 
     def close(self, link: int) -> None:
         """Forget a link."""
-        self._links.pop(link, None)
+        self._links.close(link)
 
     def broadcast(self, message: Message) -> None:
         """Send a message on every link."""
-        packed = None
-        for link in self._links.values():
-            packed = packed or link.codec.prepare(message)
-            link.put(packed)
+        self._links.broadcast(message)
 
     def load_mission(self, items: Sequence[WireItem]) -> None:
         """Put a mission in the memory, as if it had been there at power-on; home goes in by itself."""
@@ -188,7 +157,7 @@ class Autopilot:
         """Switch off and on again: the clock begins at 0, the mode is the first, the mission is kept."""
         self.aircraft.clock = 0.0
         self.captain.power_on()
-        for link in self._links.values():
+        for link in self._links:
             link.streams = Streams()
         self._reached = None
 
@@ -262,14 +231,14 @@ class Autopilot:
         """Send one message; False if there is no such message."""
         message = self.telemetry.message(message_id)
         if message is not None:
-            self._send(link, message)
+            self._links.send(link, message)
         return self.telemetry.knows(message_id)
 
     def set_interval(self, link: int, message_id: int, interval: float) -> bool:
         """Send a message every so often [s], 0 as usual, negative never; False if there is none such."""
         if message_id not in SECONDS or message_id in self.flavour.fixed_rates:
             return False
-        streams = self._link(link).streams
+        streams = self._links[link].streams
         if interval == 0.0:
             streams.usual(message_id)
         else:
@@ -278,9 +247,9 @@ class Autopilot:
 
     def tell_interval(self, link: int, message_id: int) -> None:
         """Tell how often a message is sent."""
-        interval = self._link(link).streams.intervals.get(message_id)
+        interval = self._links[link].streams.intervals.get(message_id)
         microseconds = 0 if interval is None else -1 if math.isinf(interval) else round(1e6 * interval)
-        self._send(link, mavlink.MAVLink_message_interval_message(message_id, microseconds))
+        self._links.send(link, mavlink.MAVLink_message_interval_message(message_id, microseconds))
 
     def armable(self) -> str | None:
         """Why the aircraft cannot be armed yet; None if it can."""
@@ -307,18 +276,6 @@ class Autopilot:
             self.captain.overwrite(items)
             self.parameters.set(MISSION_TOTAL, len(items))
 
-    def _link(self, link: int) -> _Link:
-        if link not in self._links:
-            key, pipe = self.settings.signing_key, None
-            if key is not None:
-                pipe = SigningPipe(key, self.settings.signing_clock, link & 0xFF, self._heard)
-            self._links[link] = _Link(self.settings.system_id, pipe)
-        return self._links[link]
-
-    def _send(self, link: int, message: Message) -> None:
-        state = self._link(link)
-        state.put(state.codec.prepare(message))
-
     def _handle(self, link: int, message: Message) -> None:
         """Do what a message asks, if it is for us and not from someone who pretends to be us."""
         header = message.get_header()
@@ -341,7 +298,7 @@ class Autopilot:
         ack = mavlink.MAVLink_command_ack_message(
             message.command, result, 0, 0, header.srcSystem, header.srcComponent
         )
-        self._send(link, ack)
+        self._links.send(link, ack)
 
     def _guided_item(self, link: int, message: Message) -> bool:
         """ArduPilot's old way to a place: a mission item with `current` 2; 3 changes the altitude alone."""
@@ -359,7 +316,7 @@ class Autopilot:
             done = self._commands.carry_out(command, link) == mavlink.MAV_RESULT_ACCEPTED
             result = mavlink.MAV_MISSION_ACCEPTED if done else mavlink.MAV_MISSION_ERROR
         answer = mavlink.MAVLink_mission_ack_message(header.srcSystem, header.srcComponent, result)
-        self._send(link, answer)
+        self._links.send(link, answer)
         return True
 
     def _set_mode(self, link: int, message: Message) -> None:  # noqa: ARG002
@@ -369,42 +326,6 @@ class Autopilot:
     def _set_current(self, link: int, message: Message) -> None:
         if self.captain.set_current(message.seq):
             self.send_message(link, mavlink.MAVLINK_MSG_ID_MISSION_CURRENT)
-
-    def _list_parameters(self, link: int, message: Message) -> None:  # noqa: ARG002
-        for each in self.parameters.all():
-            self._send(link, each)
-
-    def _read_parameter(self, link: int, message: Message) -> None:
-        answer = self.parameters.asked(message)
-        if answer is not None:
-            self._send(link, answer)
-
-    def _set_parameter(self, link: int, message: Message) -> None:  # noqa: ARG002
-        name = self.parameters.taken(message)
-        if name is not None:
-            self.broadcast(self.parameters.message(name))
-
-    def _data_stream(self, link: int, message: Message) -> None:
-        """The old way to ask for a rate; all groups alike, heartbeat and clock apart."""
-        rate = message.req_message_rate if message.start_stop else 0
-        streams = self._link(link).streams
-        for message_id in _GROUPS.get(message.req_stream_id, ()):
-            streams.set(message_id, 1.0 / rate if rate else 0.0)
-
-    def _ping(self, link: int, message: Message) -> None:
-        header = message.get_header()
-        if message.target_system == 0:
-            self._send(
-                link,
-                mavlink.MAVLink_ping_message(
-                    message.time_usec, message.seq, header.srcSystem, header.srcComponent
-                ),
-            )
-
-    def _timesync(self, link: int, message: Message) -> None:
-        if message.tc1 == 0:
-            now = round(self.aircraft.clock * 1e9)
-            self._send(link, mavlink.MAVLink_timesync_message(now, message.ts1))
 
     def _say(self, event: Say, **values: object) -> None:
         """Tell an event as text, if this autopilot does."""
@@ -450,22 +371,3 @@ class Autopilot:
         message = self.telemetry.message(message_id)
         if message is not None:
             self.broadcast(message)
-
-
-_GROUPS = {
-    mavlink.MAV_DATA_STREAM_EXTENDED_STATUS: (
-        mavlink.MAVLINK_MSG_ID_SYS_STATUS,
-        mavlink.MAVLINK_MSG_ID_GPS_RAW_INT,
-        mavlink.MAVLINK_MSG_ID_MISSION_CURRENT,
-        mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT,
-        mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT,
-    ),
-    mavlink.MAV_DATA_STREAM_POSITION: (
-        mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT,
-        mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED,
-    ),
-    mavlink.MAV_DATA_STREAM_EXTRA1: (mavlink.MAVLINK_MSG_ID_ATTITUDE,),
-    mavlink.MAV_DATA_STREAM_EXTRA2: (mavlink.MAVLINK_MSG_ID_VFR_HUD,),
-}
-_GROUPS[mavlink.MAV_DATA_STREAM_ALL] = tuple(message for group in _GROUPS.values() for message in group)
-"""What the old data streams stand for."""

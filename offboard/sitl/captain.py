@@ -17,7 +17,7 @@ from offboard.sitl.items import WireItem, checksum
 from offboard.sitl.modes import Mode, Task
 from offboard.sitl.parameters import Parameters
 from offboard.sitl.plan import Defaults, Kind, Plan
-from offboard.sitl.px4 import LANDING_WANTED
+from offboard.sitl.px4 import has_what_is_wanted
 
 DOWN = -20.0
 """Altitude that is asked for to come down to the ground [m]: it is approached ever more slowly."""
@@ -182,7 +182,7 @@ class Captain:
         """A whole new mission, flown from its flagged item on, as PX4 does it."""
         same = bool(items) and tuple(items) == self.items
         self.items = tuple(items)
-        self._feasible = self._can_fly(items)
+        self._feasible = has_what_is_wanted(items, self._parameters)
         if same and self._feasible and not self._complete:
             return
         self._complete = False
@@ -358,21 +358,3 @@ class Captain:
 
     def _cruise(self) -> float:
         return self._parameters[self.flavour.roles[Role.AIRSPEED]]
-
-    def _can_fly(self, items: Sequence[WireItem]) -> bool:
-        """PX4's check of a mission: whether it has the take-off and landing that are wanted of it."""
-        if LANDING_WANTED not in self._parameters:
-            return True
-        commands = {item.command for item in items}
-        takes_off = mavlink.MAV_CMD_NAV_TAKEOFF in commands
-        lands = bool(commands & {mavlink.MAV_CMD_NAV_LAND, mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH})
-        match int(self._parameters[LANDING_WANTED]):
-            case 1:
-                return takes_off
-            case 2:
-                return lands
-            case 3:
-                return takes_off and lands
-            case 4:
-                return takes_off == lands
-        return True

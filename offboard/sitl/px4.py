@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from offboard.sitl.dialect import mavlink
 from offboard.sitl.flavour import Flavour, Role, Say
+from offboard.sitl.items import WireItem
 from offboard.sitl.modes import Mode, Task
-from offboard.sitl.parameters import INT32, REAL32, Value
+from offboard.sitl.parameters import INT32, REAL32, Parameters, Value
 
 LANDING_WANTED = "MIS_TKO_LAND_REQ"
 """0 wants nothing of a mission, 1 a take-off, 2 a landing, 3 both, 4 both or neither."""
@@ -19,6 +22,25 @@ _AUTO_FLAGS = (
 )
 _BY_HAND = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | mavlink.MAV_MODE_FLAG_MANUAL_INPUT_ENABLED
 _STABILISED = _BY_HAND | mavlink.MAV_MODE_FLAG_STABILIZE_ENABLED
+
+
+def has_what_is_wanted(items: Sequence[WireItem], parameters: Parameters) -> bool:
+    """PX4's check of a mission: whether it has the take-off and landing that are wanted of it."""
+    if LANDING_WANTED not in parameters:
+        return True
+    commands = {item.command for item in items}
+    takes_off = mavlink.MAV_CMD_NAV_TAKEOFF in commands
+    lands = bool(commands & {mavlink.MAV_CMD_NAV_LAND, mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH})
+    match int(parameters[LANDING_WANTED]):
+        case 1:
+            return takes_off
+        case 2:
+            return lands
+        case 3:
+            return takes_off and lands
+        case 4:
+            return takes_off == lands
+    return True
 
 
 def custom_mode(main: int, sub: int = 0) -> int:

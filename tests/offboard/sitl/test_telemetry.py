@@ -159,7 +159,7 @@ def test_frames_are_numbered_per_link():
 
 
 def test_a_link_that_nobody_empties_does_not_grow_for_ever(monkeypatch):
-    monkeypatch.setattr("offboard.sitl.autopilot.LONGEST_QUEUE", 10)
+    monkeypatch.setattr("offboard.sitl.links.LONGEST_QUEUE", 10)
     ground = Station(autopilot())
     for _ in range(50):
         ground.pilot.step(0.1)
