@@ -121,7 +121,7 @@ def _first_turn(
 ) -> tuple[Complexes, Complexes, Floats]:
     """The turn on to the first leg from the present course: two segments for each polyline, (n, 2)."""
     ahead = np.full_like(unit, complex(math.cos(course), math.sin(course)))
-    delay = SEQUENCING_DELAY * performance.airspeed
+    delay = max(SEQUENCING_DELAY, performance.edit_time) * performance.airspeed
     begin, room, product = _turn(start + delay * ahead, ahead, unit, performance)
     sharp = product.real < 0.0
     angle = np.abs(np.angle(product))

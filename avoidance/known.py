@@ -202,7 +202,7 @@ def keep_what_can_be_kept(known: Known, own: Ownship, performance: Performance) 
     insisted on the margin there would find nothing. Below the sphere's radius this goes only where the
     vehicle is about to be inside the sphere whatever it does.
     """
-    run = performance.airspeed * (performance.roll_time + 1.0)
+    run = performance.airspeed * (performance.roll_time + max(1.0, performance.edit_time))
     ahead = np.array([math.cos(own.course), math.sin(own.course)])
     if len(known.walls):
         here = np.array([[own.north, own.east]])

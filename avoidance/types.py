@@ -81,6 +81,8 @@ class Performance:
     """Distance flown along a new leg until it is captured within the tracking error [m]."""
     wind_bound: float = 0.0
     """Largest steady wind the clearances must allow for [m/s]."""
+    edit_time: float = 0.0
+    """Longest time from a decision until the vehicle flies it [s]: what a mission edit takes over a link."""
 
     @property
     def turn_radius(self) -> float:

@@ -37,6 +37,10 @@ class EditAction(Enum):
 
     SEND = "send"
     """Send the mission, current item included."""
+    SELECT = "select"
+    """The mission has been taken: say which item is current."""
+    START = "start"
+    """The mission is in place, but the vehicle does something else: tell it to fly it."""
     WAIT = "wait"
     """Nothing: the vehicle has time left to take it over."""
     FALL_BACK = "fall back"
@@ -57,6 +61,10 @@ class Observed:
     """Where it is flying to; None if the vehicle does not tell."""
     refused: bool = False
     """True if it has refused what was sent last."""
+    accepted: bool = True
+    """True once it has acknowledged what was sent last."""
+    flying: bool = True
+    """True while it flies its mission."""
 
 
 @dataclass(slots=True)
@@ -83,10 +91,21 @@ class Edit:
     """How often it is sent before it is given up."""
     target_tolerance: float = 5.0
     """The vehicle's target may lie this far from the one sent [m]."""
+    select: bool = False
+    """True for a vehicle that must be told the current item after it has taken a mission."""
+    start: bool = False
+    """True if the vehicle is to be told to fly its mission, should it do something else."""
     status: EditStatus = field(default=EditStatus.PENDING, init=False)
     """How far the edit is."""
     _sent: int = field(default=0, init=False, repr=False)
     _deadline: float = field(default=-math.inf, init=False, repr=False)
+    _selected: bool = field(default=False, init=False, repr=False)
+    _started: bool = field(default=False, init=False, repr=False)
+
+    @property
+    def worst_case(self) -> float:
+        """Longest time until it is confirmed or given up [s]."""
+        return self.timeout * self.attempts
 
     def poll(self, now: float, observed: Observed | None) -> EditAction:
         """What to do at time `now` [s], given what the vehicle shows (None if nothing new is known)."""
@@ -94,23 +113,36 @@ class Edit:
             return EditAction.NONE
         refused = False
         if self._sent and observed is not None:
-            if not observed.refused and self._fits(observed):
-                self.status = EditStatus.CONFIRMED
-                return EditAction.NONE
             refused = observed.refused
+            if not refused and (step := self._step(observed)) is not None:
+                return step
         if not refused and now < self._deadline:
             return EditAction.WAIT
         if self._sent < self.attempts:
             self._sent += 1
             self._deadline = now + self.timeout
+            self._selected = self._started = False
             return EditAction.SEND
         self.status = EditStatus.REFUSED if refused else EditStatus.TIMED_OUT
         return EditAction.FALL_BACK
 
-    def _fits(self, observed: Observed) -> bool:
-        """True if the vehicle shows what is wanted."""
+    def _step(self, observed: Observed) -> EditAction | None:
+        """What follows from what the vehicle shows; None if there is nothing but to wait."""
+        if self.select and not self._selected:
+            self._selected = observed.accepted
+            return EditAction.SELECT if observed.accepted else None
         if (observed.total, observed.current) != (self.wanted.total, self.wanted.current):
-            return False
+            return None
+        if observed.flying and self._on_target(observed):
+            self.status = EditStatus.CONFIRMED
+            return EditAction.NONE
+        if self.start and not observed.flying and not self._started:
+            self._started = True
+            return EditAction.START
+        return None
+
+    def _on_target(self, observed: Observed) -> bool:
+        """True if the vehicle flies where it should, or does not tell."""
         if observed.target is None or self.wanted.target is None:
             return True
         north = observed.target.north - self.wanted.target.north

@@ -46,6 +46,7 @@ _TABLE: dict[str, Value] = {
     "ROLL_LIMIT_DEG": (REAL32, 30.0),
     "RTL_ALTITUDE": (REAL32, 100.0),
     "RTL_RADIUS": (INT16, 0),
+    "SIM_SPEEDUP": (REAL32, 1.0),
     "SYSID_MYGCS": (INT16, 255),
     "SYSID_THISMAV": (INT16, 1),
     "TECS_CLMB_MAX": (REAL32, 5.0),

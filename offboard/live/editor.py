@@ -1,0 +1,299 @@
+"""The mission that a live vehicle flies, and the edits on their way to it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from avoidance import Waypoint
+from offboard.edits import EditAction
+from offboard.errors import LinkError
+from offboard.link import EditStatus
+from offboard.live.aboard import Aboard
+from offboard.live.autopilots import Mode
+from offboard.live.edit_run import EditRecord, EditRun, Wanted
+from offboard.live.ground_track import Fit, TrackCheck
+from offboard.live.messages import Ask, Reply
+from offboard.live.watch import Watch
+from offboard.mission_list import MissionList
+from offboard.orbit import Orbit
+from offboard.raw_mission import Composed, RawItem, RawMission, compose
+
+ORBIT_TURN_RADII = 1.5
+"""Radius of a circle of our own choice, in turn radii at the bank limit."""
+COME_BACK = 5.0
+"""After a fall-back the mission is sent again so often [s, wall clock]."""
+EXPECTED_EDIT = 0.3
+"""An edit takes about this long; where the vehicle will be then is put before the new item [s]."""
+COMPLETE = 5
+"""MISSION_STATE at the end."""
+
+
+@dataclass(frozen=True, slots=True)
+class OnBoard:
+    """A mission as the vehicle has it, or will have it."""
+
+    mission: MissionList
+    """Its waypoints."""
+    composed: Composed
+    """Everything in it."""
+    hold: Orbit | None = None
+    """Circled until something else is said."""
+
+
+class Editor:
+    """Keeps what the vehicle has, changes it, and falls back if it cannot be changed.
+
+    Parameters
+    ----------
+    aboard : Aboard
+        The vehicle.
+    watch : Watch
+        Told of everything that we command.
+    """
+
+    def __init__(self, aboard: Aboard, watch: Watch) -> None:
+        self.on_board: OnBoard | None = None
+        self.status = EditStatus.IDLE
+        self.records: list[EditRecord] = []
+        self.fallbacks = 0
+        self._aboard = aboard
+        self._watch = watch
+        self._raw: RawMission | None = None
+        self._run: EditRun | None = None
+        self._begun = 0.0
+        self._check: TrackCheck | None = None
+        self._checked_again = False
+        self._back_at = math.inf
+        self._goto = -1
+        self._mission_id = 0
+        self._wanted_mission: MissionList | None = None
+        self._wanted_current = 0
+
+    @property
+    def latest(self) -> OnBoard | None:
+        """What the vehicle has, or will have if an edit is under way."""
+        if self._run is None or self.on_board is None:
+            return self.on_board
+        wanted = self._run.wanted
+        return OnBoard(wanted.mission, wanted.composed, wanted.hold)
+
+    @property
+    def busy(self) -> bool:
+        """True while an edit is under way, or the vehicle turns on to its line."""
+        return self._run is not None or self._check is not None
+
+    @property
+    def fallen_back(self) -> bool:
+        """True while the vehicle circles because an edit could not be made."""
+        return self._back_at < math.inf
+
+    def current(self) -> int:
+        """Number of the waypoint that is flown to, or will be once the edit under way is flown."""
+        if self._run is not None:
+            return self._run.entry
+        shown = self._aboard.telemetry.mission
+        if self.on_board is None or shown is None:
+            return 0
+        return self.on_board.composed.entry_of(shown.current - self._aboard.rules.first_item)
+
+    def set(self, raw: RawMission, mission: MissionList, composed: Composed) -> None:
+        """The vehicle has this mission, and no edit is under way."""
+        self._raw = raw
+        self.on_board = OnBoard(mission, composed)
+        self._run = self._check = None
+        self._back_at = math.inf
+        self._mission_id = 0
+        self.status = EditStatus.IDLE
+
+    def at_end(self) -> bool:
+        """True if the vehicle shows that it has come to the end of its mission."""
+        shown, now = self._aboard.telemetry.mission, self.on_board
+        if now is None or shown is None or self._run is not None or now.hold is not None:
+            return False
+        first, last = self._aboard.rules.first_item, len(now.mission.entries) - 1
+        if now.composed.entry_of(shown.current - first) > last:
+            return True
+        at = next(i for i, entry in enumerate(now.composed.entries) if entry == last)
+        if shown.current - first != at:
+            return False
+        return self._aboard.telemetry.reached - first == at or shown.state == COMPLETE
+
+    def differs(self) -> bool:
+        """True if the vehicle shows a mission other than the one that it should have."""
+        shown, now = self._aboard.telemetry.mission, self.on_board
+        if now is None or shown is None or self._run is not None or self.fallen_back:
+            return False
+        rules = self._aboard.rules
+        if shown.total and shown.total != rules.total(rules.first_item + len(now.composed.items)):
+            return True
+        if shown.mission_id and not self._mission_id:
+            self._mission_id = shown.mission_id
+        return shown.mission_id != self._mission_id
+
+    def change(self, mission: MissionList, current: int, hold: Orbit | None, *, start: bool = False) -> None:
+        """Begin an edit; one under way is given up for it."""
+        raw = self._loaded()
+        aboard = self._aboard
+        own = aboard.ownship()
+        anchor = Waypoint(
+            own.north + EXPECTED_EDIT * own.velocity_north,
+            own.east + EXPECTED_EDIT * own.velocity_east,
+            own.altitude,
+        )
+        composed = compose(raw, mission, current, aboard.frame, anchor=anchor, hold=hold)
+        target = _target(mission, current, hold, anchor)
+        self._send(Wanted(mission, composed, hold, target, current), start=start or self.fallen_back)
+
+    def again(self) -> None:
+        """Send the mission as it should be once more, and start it: our own edit made it leave it."""
+        now = self.latest
+        if now is not None:
+            self._watch.edited(self._aboard.time, again=True)
+            self.change(now.mission, self.current(), now.hold, start=True)
+
+    def give_up(self) -> None:
+        """End the edit under way without any further command: somebody else flies, or the link is lost."""
+        if self._run is not None:
+            self._finish(EditStatus.REFUSED)
+        self._check, self._back_at = None, math.inf
+
+    def on_reply(self, reply: Reply) -> None:
+        """Take over the outcome of a request."""
+        if self._run is not None:
+            self._run.reply(reply)
+        if reply.token == self._goto and not reply.ok:
+            self._aboard.tell(
+                "alarm", f"the vehicle refused to go to a safe place as well ({reply.why}); take over"
+            )
+
+    def work(self) -> None:
+        """Do what is next."""
+        if self._run is not None:
+            self._move_on()
+            action = self._run.work(self._aboard.telemetry)
+            if self._run.started:
+                self._watch.expect(Mode.MISSION, self._aboard.mode, self._aboard.time)
+                self._run.started = False
+            if self._run.status is EditStatus.CONFIRMED:
+                self._confirmed()
+            elif action is EditAction.FALL_BACK:
+                self._fall_back()
+        elif self.fallen_back and self._aboard.session.wall() >= self._back_at:
+            now = self.latest
+            if now is not None:
+                self.change(self._wanted_mission or now.mission, self._wanted_current, now.hold, start=True)
+        elif self._check is not None:
+            self._look_at_track()
+
+    # --- inside -----------------------------------------------------------------------------------------
+
+    def _loaded(self) -> RawMission:
+        if self._raw is None:
+            raise LinkError("no mission has been uploaded")
+        return self._raw
+
+    def _send(self, wanted: Wanted, *, start: bool) -> None:
+        aboard = self._aboard
+        if self._run is not None:
+            self._finish(EditStatus.TIMED_OUT)
+        wire: tuple[RawItem, ...] = aboard.rules.wire(wanted.composed.items, aboard.home)
+        self._run = EditRun(
+            aboard.session, aboard.rules, wanted, wire, aboard.times, aboard.frame, start=start
+        )
+        self._begun = aboard.time
+        self.status = EditStatus.PENDING
+        self._watch.edited(self._begun, again=start)
+        self._run.work(aboard.telemetry)
+
+    def _finish(self, status: EditStatus) -> None:
+        run = self._run
+        if run is None:
+            return
+        self.records.append(run.record(self._begun, status))
+        self.status = status
+        self._run = None
+
+    def _move_on(self) -> None:
+        """The vehicle may reach its target while an edit of what lies behind it is on its way."""
+        run, before, shown = self._run, self.on_board, self._aboard.telemetry.mission
+        if run is None or before is None or shown is None or run.sent_current or run.wanted.hold is not None:
+            return
+        was = before.composed.entry_of(shown.current - self._aboard.rules.first_item)
+        old, new = before.mission.entries, run.wanted.mission.entries
+        same = run.entry < min(len(old), len(new)) and old[run.entry].waypoint == new[run.entry].waypoint
+        if same and was == run.entry + 1 and shown.arrived > run.begun:
+            run.move_on()
+
+    def _confirmed(self) -> None:
+        run = self._run
+        if run is None:
+            return
+        wanted = run.wanted
+        self.on_board = OnBoard(wanted.mission, wanted.composed, wanted.hold)
+        shown = self._aboard.telemetry.mission
+        self._mission_id = 0 if shown is None else shown.mission_id
+        self._finish(EditStatus.CONFIRMED)
+        if self.fallen_back:
+            self._aboard.tell("info", "the vehicle flies its mission again")
+        self._back_at, self._wanted_mission = math.inf, None
+        self._watch.edited(self._aboard.time, again=self._watch.retried)
+        if wanted.hold is None:
+            self._check = TrackCheck.begin(self._aboard.ownship(), run.target, self._aboard.performance)
+
+    def _look_at_track(self) -> None:
+        """The ground track after an edit."""
+        check = self._check
+        if check is None:
+            return
+        shown = self.on_board
+        if self._aboard.mode is not Mode.MISSION or shown is None:
+            self._check = None
+            return
+        current = self.current()
+        if current < len(shown.mission.entries) and shown.mission.entries[current].waypoint != check.target:
+            self._check = None  # it has been there
+            return
+        fit = check.look(self._aboard.ownship())
+        if fit is Fit.OPEN:
+            return
+        self._check = None
+        if fit is Fit.ON:
+            self._checked_again = False
+            return
+        self._aboard.tell("alarm", "the vehicle does not fly along the line of the last edit; look at it")
+        if not self._checked_again:
+            self._checked_again = True
+            self.change(shown.mission, current, shown.hold)
+
+    def _fall_back(self) -> None:
+        """An edit could not be made: circle where its first waypoint is to be, and try again from there."""
+        run, aboard = self._run, self._aboard
+        if run is None:
+            return
+        wanted = run.wanted
+        self._finish(run.status)
+        self.fallbacks += 1
+        words = "refused" if self.status is EditStatus.REFUSED else "did not confirm"
+        aboard.tell(
+            "alarm", f"the vehicle {words} an edit of its mission; it is sent to the new waypoint instead"
+        )
+        self._wanted_mission, self._wanted_current = wanted.mission, wanted.current
+        self._back_at = aboard.session.wall() + COME_BACK
+        goal = wanted.target
+        latitude_deg, longitude_deg = aboard.frame.to_geodetic(goal.north, goal.east)
+        radius = ORBIT_TURN_RADII * aboard.performance.turn_radius
+        if wanted.hold is not None:
+            radius = wanted.hold.radius * wanted.hold.direction
+        self._watch.expect(aboard.rules.goto_mode, aboard.mode, aboard.time)
+        absolute = goal.altitude + aboard.home.altitude_m
+        self._goto = aboard.session.ask(Ask.GOTO, latitude_deg, longitude_deg, absolute, radius)
+
+
+def _target(mission: MissionList, current: int, hold: Orbit | None, anchor: Waypoint) -> Waypoint:
+    """Where the vehicle is to fly to."""
+    if hold is not None:
+        return Waypoint(hold.north, hold.east, hold.altitude)
+    if current < len(mission.entries):
+        return mission.entries[current].waypoint
+    return anchor

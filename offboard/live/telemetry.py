@@ -1,0 +1,264 @@
+"""What a vehicle has told of itself, put together from its messages. Pure: messages in, facts out."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+from offboard.live.messages import Message
+
+AUTOPILOT = 1
+"""MAV_COMP_ID of the autopilot."""
+ARMED = 128
+"""Bit of HEARTBEAT.base_mode."""
+OUT_OF_ORDER = 10.0
+"""A message up to this much older than the newest is late; an older one means a restart [s]."""
+RESTART_PROOF = 3
+"""So many messages in a row that are older than that are believed."""
+DEGREE = 1e7
+NO_MISSION = 65535
+"""MISSION_CURRENT.total of PX4 without a mission."""
+STALE = 30.0
+"""Positions are kept this long for those who ask about the past [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fix:
+    """One GLOBAL_POSITION_INT in plain units."""
+
+    time: float
+    """Vehicle's clock [s]."""
+    latitude_deg: float
+    longitude_deg: float
+    altitude: float
+    """Above the vehicle's home [m]."""
+    amsl: float
+    """Above mean sea level [m]."""
+    velocity_north: float
+    velocity_east: float
+    climb_rate: float
+    """Over ground [m/s]."""
+    heading: float
+    """[rad], NaN if unknown."""
+
+
+@dataclass(frozen=True, slots=True)
+class MissionShown:
+    """One MISSION_CURRENT."""
+
+    current: int
+    """Sequence number of the current item."""
+    total: int
+    """Number of items as the autopilot counts them."""
+    state: int = 0
+    """MISSION_STATE: 0 unknown, 1 none, 2 not started, 3 active, 4 paused, 5 complete."""
+    mission_id: int = 0
+    """PX4's checksum; 0 if it sends none."""
+    arrived: float = 0.0
+    """Wall clock [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class TargetShown:
+    """One POSITION_TARGET_GLOBAL_INT: where the autopilot is flying to."""
+
+    latitude_deg: float
+    longitude_deg: float
+    arrived: float = 0.0
+    """Wall clock [s]."""
+
+
+@dataclass(slots=True)
+class Telemetry:
+    """The latest of everything. `feed` takes messages in the order in which they arrive."""
+
+    autopilot: int = -1
+    """MAV_AUTOPILOT; -1 before the first heartbeat."""
+    custom_mode: int = -1
+    """HEARTBEAT.custom_mode."""
+    armed: bool = False
+    mission: MissionShown | None = None
+    target: TargetShown | None = None
+    reached: int = -1
+    """Item of the last MISSION_ITEM_REACHED; they repeat."""
+    on_ground: bool | None = None
+    """EXTENDED_SYS_STATE; None if it is not sent."""
+    bank: float = 0.0
+    """[rad]."""
+    yaw: float = math.nan
+    """[rad]."""
+    airspeed: float = math.nan
+    """[m/s]."""
+    battery: float = math.nan
+    """State of charge, 0 to 1."""
+    home: tuple[float, float, float] | None = None
+    """Latitude, longitude [deg], altitude above mean sea level [m]."""
+    texts: list[tuple[int, str]] = field(default_factory=list)
+    """Severity and text of each STATUSTEXT since this was last emptied."""
+    restarts: int = 0
+    """How often the vehicle's clock has begun anew."""
+    heard: float = -math.inf
+    """Wall clock of the last message [s]."""
+    heartbeat: float = -math.inf
+    """Wall clock of the last heartbeat [s]."""
+    late: int = 0
+    """Messages that came out of order and were left out."""
+    fixes: deque[Fix] = field(default_factory=deque)
+    """Positions of the last while, in their order."""
+    _older: int = 0
+
+    @property
+    def fix(self) -> Fix | None:
+        """The newest position."""
+        return self.fixes[-1] if self.fixes else None
+
+    def feed(self, message: Message) -> None:
+        """Take over one message; what is out of range is left out."""
+        self.heard = max(self.heard, message.arrived)
+        if message.component != AUTOPILOT:
+            return
+        take = self._TAKE.get(message.name)
+        if take is not None:
+            take(self, message)
+
+    def at(self, time: float) -> Fix | None:
+        """The position at a time of the vehicle's clock [s], between the two nearest; None before the first.
+
+        After the newest it is the newest, moved on at its velocity for two seconds at most by the caller.
+        """
+        if not self.fixes or time < self.fixes[0].time:
+            return None
+        for before, after in zip(reversed([*self.fixes][:-1]), reversed(self.fixes), strict=False):
+            if before.time <= time <= after.time:
+                return _between(before, after, time)
+        return self.fixes[-1]
+
+    def _heartbeat(self, message: Message) -> None:
+        self.autopilot = message.whole("autopilot", -1)
+        self.custom_mode = message.whole("custom_mode", -1)
+        self.armed = bool(message.whole("base_mode") & ARMED)
+        self.heartbeat = message.arrived
+
+    def _attitude(self, message: Message) -> None:
+        if math.isfinite(roll := message.number("roll")):
+            self.bank = roll
+        if math.isfinite(yaw := message.number("yaw")):
+            self.yaw = yaw
+
+    def _airspeed(self, message: Message) -> None:
+        if 0.0 <= (airspeed := message.number("airspeed")) < 1e3:
+            self.airspeed = airspeed
+
+    def _reached(self, message: Message) -> None:
+        self.reached = message.whole("seq", -1)
+
+    def _target(self, message: Message) -> None:
+        place = message.number("lat_int") / DEGREE, message.number("lon_int") / DEGREE
+        if _on_earth(*place):
+            self.target = TargetShown(*place, message.arrived)
+
+    def _landed(self, message: Message) -> None:
+        landed = message.whole("landed_state")
+        self.on_ground = None if landed == 0 else landed == 1
+
+    def _text(self, message: Message) -> None:
+        self.texts.append((message.whole("severity", 6), str(message.fields.get("text", ""))))
+
+    def _home(self, message: Message) -> None:
+        place = message.number("latitude") / DEGREE, message.number("longitude") / DEGREE
+        if _on_earth(*place) and math.isfinite(altitude := message.number("altitude")):
+            self.home = (*place, altitude / 1e3)
+
+    def _battery(self, message: Message) -> None:
+        if 0 <= (left := message.whole("battery_remaining", -1)) <= 100:
+            self.battery = left / 100.0
+
+    def _mission(self, message: Message) -> None:
+        total = message.whole("total")
+        self.mission = MissionShown(
+            message.whole("seq"),
+            0 if total == NO_MISSION else total,
+            message.whole("mission_state"),
+            message.whole("mission_id"),
+            message.arrived,
+        )
+
+    def _position(self, message: Message) -> None:
+        latitude_deg, longitude_deg = message.number("lat") / DEGREE, message.number("lon") / DEGREE
+        time = message.number("time_boot_ms") / 1e3
+        values = [message.number(key) for key in ("relative_alt", "alt", "vx", "vy", "vz")]
+        if not (_on_earth(latitude_deg, longitude_deg) and all(map(math.isfinite, (time, *values)))):
+            return
+        newest = self.fix
+        if newest is not None and time <= newest.time:
+            if time > newest.time - OUT_OF_ORDER:
+                self.late += 1
+                return
+            self._older += 1
+            if self._older < RESTART_PROOF:
+                return
+            self.restarts += 1
+            self.fixes.clear()
+        self._older = 0
+        heading = message.number("hdg") / 100.0
+        self.fixes.append(
+            Fix(
+                time,
+                latitude_deg,
+                longitude_deg,
+                values[0] / 1e3,
+                values[1] / 1e3,
+                values[2] / 100.0,
+                values[3] / 100.0,
+                -values[4] / 100.0,
+                math.radians(heading) if 0.0 <= heading < 360.0 else math.nan,
+            )
+        )
+        while self.fixes[0].time < time - STALE:
+            self.fixes.popleft()
+
+    _TAKE: ClassVar[dict[str, Callable[[Telemetry, Message], None]]] = {
+        "HEARTBEAT": _heartbeat,
+        "GLOBAL_POSITION_INT": _position,
+        "ATTITUDE": _attitude,
+        "VFR_HUD": _airspeed,
+        "MISSION_CURRENT": _mission,
+        "MISSION_ITEM_REACHED": _reached,
+        "POSITION_TARGET_GLOBAL_INT": _target,
+        "EXTENDED_SYS_STATE": _landed,
+        "STATUSTEXT": _text,
+        "HOME_POSITION": _home,
+        "BATTERY_STATUS": _battery,
+    }
+
+
+def _between(a: Fix, b: Fix, time: float) -> Fix:
+    """A position between two, by their share of the time."""
+    part = (time - a.time) / (b.time - a.time)
+    keep = 1.0 - part
+    return Fix(
+        time,
+        keep * a.latitude_deg + part * b.latitude_deg,
+        keep * a.longitude_deg + part * _near(b.longitude_deg, a.longitude_deg),
+        keep * a.altitude + part * b.altitude,
+        keep * a.amsl + part * b.amsl,
+        keep * a.velocity_north + part * b.velocity_north,
+        keep * a.velocity_east + part * b.velocity_east,
+        keep * a.climb_rate + part * b.climb_rate,
+        b.heading,
+    )
+
+
+def _near(longitude_deg: float, other: float) -> float:
+    """A longitude less than half a turn from another [deg]."""
+    return other + (longitude_deg - other + 180.0) % 360.0 - 180.0
+
+
+def _on_earth(latitude_deg: float, longitude_deg: float) -> bool:
+    """True for a place that can be, (0, 0) left out: autopilots send it before they know."""
+    return (
+        abs(latitude_deg) <= 90.0 and abs(longitude_deg) <= 180.0 and (latitude_deg, longitude_deg) != (0, 0)
+    )
