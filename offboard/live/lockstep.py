@@ -57,7 +57,8 @@ class Bridge:
         """Simulated time [s]."""
         self._mavsdk = mavsdk
         self._simulation = simulation
-        self._duration = duration
+        self.duration = duration
+        """Length of a step [s]."""
         self._steps = 0
         self._turn = threading.Lock()
         self._up: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()
@@ -73,8 +74,8 @@ class Bridge:
         """Let the simulation do one step, and hand over what it says."""
         with self._turn:
             self._steps += 1
-            self.time = self._steps * self._duration
-            self._simulation.step(self._duration)
+            self.time = self._steps * self.duration
+            self._simulation.step(self.duration)
             self._hand_over()
 
     def close(self) -> None:
@@ -135,6 +136,15 @@ class LockstepSession(MavsdkSession):
         self._open.add(token)
         return token
 
+    def keep_step(self) -> None:
+        """Ask for a SYSTEM_TIME in each step."""
+        super().request_rate(SYSTEM_TIME, 1.0 / self._bridge.duration)
+
+    def request_rate(self, message_id: int, rate: float) -> None:
+        """Ask for a message so many times a second; SYSTEM_TIME comes with each step."""
+        if message_id != SYSTEM_TIME:
+            super().request_rate(message_id, rate)
+
     def wall(self) -> float:
         """Simulated time."""
         return self._bridge.time
@@ -188,7 +198,7 @@ def connect_in_step(simulation: Simulation, duration: float = 0.1) -> LockstepSe
         bridge.step()
         if (system := mavsdk.first_autopilot(0.05)) is not None:
             session = LockstepSession(mavsdk, system, bridge)
-            session.request_rate(SYSTEM_TIME, 1.0 / duration)
+            session.keep_step()
             return session
     bridge.close()
     mavsdk.destroy()
