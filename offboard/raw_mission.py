@@ -104,6 +104,8 @@ class RawMission:
         )
         if not found:
             raise LinkError("the mission has no item to fly to")
+        if len(found) > 1 and _waits_there(items[found[-2]], items[found[-1]]):
+            found = found[:-1]
         return cls(tuple(items), found)
 
     @classmethod
@@ -166,6 +168,11 @@ class Composed:
     """For each item the entry of the `MissionList` it is; None for what is no waypoint of the list."""
     current: int
     """Index of the item to fly to now."""
+
+    def item_of(self, entry: int) -> RawItem | None:
+        """The last item of an entry; None if it has none."""
+        found = [item for item, of in zip(self.items, self.entries, strict=True) if of == entry]
+        return found[-1] if found else None
 
     def entry_of(self, index: int) -> int:
         """Entry that is flown to while item `index` is current; one past the last after the last."""
@@ -266,6 +273,11 @@ class _Builder:
         last = next((item for item in reversed(self.items) if item.command in FLOWN_TO | ENDS), None)
         if last is not None and last.command not in ENDS:
             self.add(replace(last, command=LOITER_UNLIMITED, params=(0.0, 0.0, 0.0, math.nan)))
+
+
+def _waits_there(last: RawItem, after: RawItem) -> bool:
+    """True if an item only makes the vehicle circle at the waypoint before it: no waypoint of its own."""
+    return after.command == LOITER_UNLIMITED and abs(after.x - last.x) <= 2 and abs(after.y - last.y) <= 2
 
 
 def _jump(item: RawItem, moved_to: dict[int, int]) -> RawItem:

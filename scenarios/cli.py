@@ -13,7 +13,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from scenarios import __version__, compare_commands, fmu_commands, hil_commands, sitl_commands
+from scenarios import (
+    __version__,
+    compare_commands,
+    fmu_commands,
+    hil_commands,
+    offboard_commands,
+    sitl_commands,
+)
 from scenarios.command_errors import INTERRUPTED, OK, UNSAFE, expected_errors
 
 if TYPE_CHECKING:
@@ -31,6 +38,7 @@ app = typer.Typer(
 app.add_typer(fmu_commands.app)
 app.add_typer(hil_commands.app)
 app.command()(compare_commands.compare)
+app.command()(offboard_commands.offboard)
 app.command()(sitl_commands.sitl)
 
 
@@ -236,7 +244,7 @@ def _fly_and_write(
     from scenarios.score import score  # noqa: PLC0415
     from scenarios.show import Progress, results  # noqa: PLC0415
 
-    with _stop_on_interrupt() as stop, Hangar(scenario, parameters) as hangar:
+    with stop_on_interrupt() as stop, Hangar(scenario, parameters) as hangar:
         flight = Flight(scenario, hangar, seed=seed, parameters=parameters, avoidance=avoidance)
         with Progress(scenario) as progress:
             for frame in flight:
@@ -256,7 +264,7 @@ def _fly_and_write(
 
 
 @contextlib.contextmanager
-def _stop_on_interrupt() -> Iterator[list[int]]:
+def stop_on_interrupt() -> Iterator[list[int]]:
     """The first Ctrl-C only notes that it came (the list is then not empty), the second one stops hard."""
     stop: list[int] = []
 

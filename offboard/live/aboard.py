@@ -40,6 +40,8 @@ class Aboard:
     parameters: dict[str, float]
     """Those that were asked for, by name."""
     clock: VehicleClock
+    simulated: bool = False
+    """True if the vehicle says that it is a simulation."""
     listener: Callable[[Event], None] | None = None
     """Called with each event."""
     events: list[Event] = field(default_factory=list)
@@ -98,7 +100,8 @@ class Aboard:
     def _ownship(self, fix: Fix, time: float, age: float) -> Ownship:
         north, east = self.frame.to_map(fix.latitude_deg, fix.longitude_deg)
         airspeed = self.telemetry.airspeed
-        heading = self.telemetry.yaw if math.isnan(fix.heading) else fix.heading
+        attitude = self.telemetry.attitude
+        heading = attitude.yaw if math.isnan(fix.heading) and attitude is not None else fix.heading
         return Ownship(
             time=time,
             north=north + age * fix.velocity_north,
@@ -109,5 +112,5 @@ class Aboard:
             climb_rate=fix.climb_rate,
             airspeed=self.performance.airspeed if math.isnan(airspeed) else airspeed,
             heading=0.0 if math.isnan(heading) else heading,
-            bank=self.telemetry.bank,
+            bank=0.0 if attitude is None else attitude.roll,
         )

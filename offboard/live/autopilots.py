@@ -60,6 +60,10 @@ class Rules(Protocol):
     @property
     def edit_may_cause(self) -> frozenset[Mode]: ...
     @property
+    def demand(self) -> str: ...
+    @property
+    def loiter_radius(self) -> str: ...
+    @property
     def first_item(self) -> int: ...
     def mode(self, custom_mode: int) -> Mode:
         """The meaning of HEARTBEAT.custom_mode."""
@@ -116,6 +120,10 @@ class Px4:
     goto_mode: Mode = Mode.HOLD
     edit_may_cause: frozenset[Mode] = frozenset({Mode.HOLD})
     """A plan that it finds infeasible is acknowledged, then it drops to Hold."""
+    loiter_radius: str = "NAV_LOITER_RAD"
+    """Radius of a circle where the item gives none [m]."""
+    demand: str = "MIS_TKO_LAND_REQ"
+    """What makes it ask for a take-off or a landing in each mission."""
     first_item: int = 0
 
     def mode(self, custom_mode: int) -> Mode:
@@ -202,6 +210,9 @@ class ArduPilot:
     """Up to this value it does nothing."""
     goto_mode: Mode = Mode.GOTO
     edit_may_cause: frozenset[Mode] = frozenset()
+    loiter_radius: str = "WP_LOITER_RAD"
+    """Radius of a circle where the item gives none [m]; negative turns to the left."""
+    demand: str = ""
     first_item: int = 1
 
     def mode(self, custom_mode: int) -> Mode:

@@ -17,7 +17,7 @@ from offboard.live.messages import Ask, Reply
 from offboard.live.watch import Watch
 from offboard.mission_list import MissionList
 from offboard.orbit import Orbit
-from offboard.raw_mission import Composed, RawItem, RawMission, compose
+from offboard.raw_mission import LOITER_UNLIMITED, Composed, RawItem, RawMission, compose
 
 ORBIT_TURN_RADII = 1.5
 """Radius of a circle of our own choice, in turn radii at the bank limit."""
@@ -117,7 +117,23 @@ class Editor:
         at = next(i for i, entry in enumerate(now.composed.entries) if entry == last)
         if shown.current - first != at:
             return False
+        item = now.composed.items[at]
+        if item.command == LOITER_UNLIMITED:
+            own, end = self._aboard.ownship(), now.mission.entries[last].waypoint
+            return math.hypot(own.north - end.north, own.east - end.east) <= self.end_radius()
         return self._aboard.telemetry.reached - first == at or shown.state == COMPLETE
+
+    def end_radius(self) -> float:
+        """How near the vehicle comes to its last waypoint [m]: a mission may end on a circle about it."""
+        performance, now = self._aboard.performance, self.on_board
+        last = None if now is None else now.composed.item_of(len(now.mission.entries) - 1)
+        if last is None or last.command != LOITER_UNLIMITED:
+            return performance.acceptance_radius
+        radius = abs(last.params[2]) or abs(
+            self._aboard.parameters.get(self._aboard.rules.loiter_radius, 0.0)
+        )
+        radius = max(radius, ORBIT_TURN_RADII * performance.turn_radius)
+        return max(performance.acceptance_radius, 1.1 * radius + performance.tracking_error)
 
     def differs(self) -> bool:
         """True if the vehicle shows a mission other than the one that it should have."""

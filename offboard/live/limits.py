@@ -14,8 +14,13 @@ ROLL_TIME = 1.0
 """Time that a bank takes to be reached; no parameter of either autopilot says it [s]."""
 TRACKING_ERROR = 15.0
 """How far from a straight leg autopilots stay once it is captured, gusts included [m]."""
-EXTRA = ("MIS_TKO_LAND_REQ",)
-"""Parameters that are looked at beside those of the performance, where they exist."""
+EXTRA = {
+    "PX4": ("MIS_TKO_LAND_REQ", "NAV_LOITER_RAD", "SYS_HITL", "SYS_AUTOSTART"),
+    "ArduPilot": ("SIM_SPEEDUP", "WP_LOITER_RAD"),
+}
+"""Parameters that are looked at beside those of the performance, by autopilot, where they exist."""
+SIMULATED_AIRFRAMES = range(10040, 10050)
+"""PX4's numbers of aircraft that its own simulator flies."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +52,13 @@ class Limits:
     extra: dict[str, float]
     """Other parameters by name, those that exist."""
 
+    @property
+    def simulated(self) -> bool:
+        """True for a vehicle that says that it is a simulation; one that does not may be real."""
+        airframe = int(self.extra.get("SYS_AUTOSTART", 0.0))
+        hitl = self.extra.get("SYS_HITL", 0.0) > 0.0
+        return hitl or airframe in SIMULATED_AIRFRAMES or "SIM_SPEEDUP" in self.extra
+
     def performance(self, times: EditTimes, wind_bound: float) -> Performance:
         """The same for the avoidance core."""
         return Performance(
@@ -72,7 +84,7 @@ def read_limits(session: Session, rules: Rules) -> Limits:
     bank = _first(session, rules.bank, (math.radians(5.0), math.radians(80.0)))
     radius = _first(session, rules.acceptance_radius, (0.1, 10_000.0))
     reaction = session.parameter(rules.traffic_reaction)
-    extra = {name: value for name in EXTRA if (value := session.parameter(name)) is not None}
+    extra = {name: value for name in EXTRA[rules.name] if (value := session.parameter(name)) is not None}
     return Limits(airspeed, bank, radius, bool(reaction and reaction > rules.traffic_warns), extra)
 
 

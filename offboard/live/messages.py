@@ -87,6 +87,9 @@ class Session(Protocol):
     def parameter(self, name: str) -> float | None:
         """A parameter of the vehicle, None if it has none of that name. Waits for the answer."""
 
+    def set_parameter(self, name: str, value: float) -> bool:
+        """Set a parameter of the vehicle; False if it does not take it. Waits for the answer."""
+
     def wall(self) -> float:
         """Wall clock [s], the one that `arrived` is of."""
 

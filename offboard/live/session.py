@@ -163,6 +163,21 @@ class MavsdkSession:
                     return None
         return None
 
+    def set_parameter(self, name: str, value: float) -> bool:
+        """Set a parameter of the vehicle; False if it does not take it. Waits for the answer."""
+        from mavsdk.plugins.param import ParamError  # noqa: PLC0415
+
+        for put, number in (
+            (self._parameters.set_param_int, round(value)),
+            (self._parameters.set_param_float, value),
+        ):
+            try:
+                put(name, number)
+            except ParamError:
+                continue
+            return True
+        return False
+
     def wall(self) -> float:
         """Wall clock [s]."""
         return time.monotonic()

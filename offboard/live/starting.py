@@ -75,7 +75,17 @@ def open_vehicle(
         frame = MapFrame(*home)
     performance = limits.performance(times or EditTimes(), wind_bound)
     clock = VehicleClock(fix.time, session.wall())
-    aboard = Aboard(session, telemetry, rules, frame, performance, times or EditTimes(), limits.extra, clock)
+    aboard = Aboard(
+        session,
+        telemetry,
+        rules,
+        frame,
+        performance,
+        times or EditTimes(),
+        limits.extra,
+        clock,
+        simulated=limits.simulated,
+    )
     if limits.traffic_reaction:
         name = rules.traffic_reaction
         aboard.tell(

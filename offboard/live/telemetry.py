@@ -6,6 +6,7 @@ import math
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import ClassVar
 
 from offboard.live.messages import Message
@@ -43,6 +44,17 @@ class Fix:
     """Over ground [m/s]."""
     heading: float
     """[rad], NaN if unknown."""
+
+
+@dataclass(frozen=True, slots=True)
+class Attitude:
+    """One ATTITUDE; radians."""
+
+    time: float
+    """Vehicle's clock [s]."""
+    roll: float
+    pitch: float
+    yaw: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,10 +98,10 @@ class Telemetry:
     """Item of the last MISSION_ITEM_REACHED; they repeat."""
     on_ground: bool | None = None
     """EXTENDED_SYS_STATE; None if it is not sent."""
-    bank: float = 0.0
-    """[rad]."""
-    yaw: float = math.nan
-    """[rad]."""
+    attitude: Attitude | None = None
+    """The newest."""
+    attitudes: deque[Attitude] = field(default_factory=lambda: deque(maxlen=30))
+    """The last few, in their order."""
     airspeed: float = math.nan
     """[m/s]."""
     battery: float = math.nan
@@ -125,15 +137,17 @@ class Telemetry:
             take(self, message)
 
     def at(self, time: float) -> Fix | None:
-        """The position at a time of the vehicle's clock [s], between the two nearest; None before the first.
+        """The position at a time of the vehicle's clock [s], between the two nearest.
 
-        After the newest it is the newest, moved on at its velocity for two seconds at most by the caller.
+        After the newest it is the newest; before the oldest it is None.
         """
         if not self.fixes or time < self.fixes[0].time:
             return None
-        for before, after in zip(reversed([*self.fixes][:-1]), reversed(self.fixes), strict=False):
+        after = self.fixes[-1]
+        for before in reversed(self.fixes):
             if before.time <= time <= after.time:
-                return _between(before, after, time)
+                return after if before is after else _between(before, after, time)
+            after = before
         return self.fixes[-1]
 
     def _heartbeat(self, message: Message) -> None:
@@ -143,10 +157,14 @@ class Telemetry:
         self.heartbeat = message.arrived
 
     def _attitude(self, message: Message) -> None:
-        if math.isfinite(roll := message.number("roll")):
-            self.bank = roll
-        if math.isfinite(yaw := message.number("yaw")):
-            self.yaw = yaw
+        values = [message.number(key) for key in ("roll", "pitch", "yaw")]
+        time = message.number("time_boot_ms") / 1e3
+        if not all(map(math.isfinite, (time, *values))):
+            return
+        self.attitude = Attitude(time, *values)
+        if self.attitudes and not 0.0 <= time - self.attitudes[-1].time < OUT_OF_ORDER:
+            self.attitudes.clear()
+        self.attitudes.append(self.attitude)
 
     def _airspeed(self, message: Message) -> None:
         if 0.0 <= (airspeed := message.number("airspeed")) < 1e3:
@@ -165,7 +183,7 @@ class Telemetry:
         self.on_ground = None if landed == 0 else landed == 1
 
     def _text(self, message: Message) -> None:
-        self.texts.append((message.whole("severity", 6), str(message.fields.get("text", ""))))
+        self.texts.append((message.whole("severity", 6), str(message.fields.get("text", "")).strip()))
 
     def _home(self, message: Message) -> None:
         place = message.number("latitude") / DEGREE, message.number("longitude") / DEGREE
@@ -175,6 +193,20 @@ class Telemetry:
     def _battery(self, message: Message) -> None:
         if 0 <= (left := message.whole("battery_remaining", -1)) <= 100:
             self.battery = left / 100.0
+
+    def attitude_at(self, time: float) -> Attitude | None:
+        """The attitude at a time of the vehicle's clock [s], between the two nearest; None if unknown."""
+        for before, after in pairwise(self.attitudes):
+            if before.time <= time <= after.time and after.time > before.time:
+                part = (time - before.time) / (after.time - before.time)
+                turn = math.remainder(after.yaw - before.yaw, 2.0 * math.pi)
+                return Attitude(
+                    time,
+                    before.roll + part * (after.roll - before.roll),
+                    before.pitch + part * (after.pitch - before.pitch),
+                    before.yaw + part * turn,
+                )
+        return self.attitude
 
     def _mission(self, message: Message) -> None:
         total = message.whole("total")

@@ -13,6 +13,7 @@ from offboard.live.aboard import Aboard
 from offboard.live.autopilots import Mode
 from offboard.live.editor import Editor, OnBoard
 from offboard.live.messages import Ask, Message, Reply
+from offboard.live.telemetry import Telemetry
 from offboard.live.watch import Seen, Watch
 from offboard.mission import MissionItem, MissionPlan, MissionProgress
 from offboard.mission_list import MissionList
@@ -50,8 +51,10 @@ class LiveVehicle:
         self.watch = Watch(aboard.rules, expected=aboard.mode, disarmed=not aboard.telemetry.armed)
         self.editor = Editor(aboard, self.watch)
         self.link_losses = 0
-        self.obstacle_messages: list[Message] = []
-        """What has come in about obstacles; whoever makes scans of it takes it away."""
+        self.on_obstacle: Callable[[Message, Telemetry], None] | None = None
+        """Given what comes in about obstacles, whoever makes scans of it."""
+        self.finished_at = math.inf
+        """When the last waypoint was reached [s]."""
         self._finished = False
         self._paused = False
         self._route: Route | None = None
@@ -72,6 +75,17 @@ class LiveVehicle:
     def time(self) -> float:
         """Seconds since the start by the vehicle's clock; goes on while the link is silent."""
         return self.aboard.time
+
+    @property
+    def silent(self) -> float:
+        """How long nothing has been heard of it [s, wall clock]."""
+        return max(self.aboard.session.wall() - self.aboard.telemetry.heard, 0.0)
+
+    @property
+    def heard_until(self) -> float:
+        """When its position was last told [s]."""
+        fix = self.aboard.telemetry.fix
+        return 0.0 if fix is None else self.aboard.clock.ours(fix.time)
 
     @property
     def finished(self) -> bool:
@@ -163,7 +177,10 @@ class LiveVehicle:
         """
         aboard = self.aboard
         if (problem := aboard.rules.problem(raw, aboard.parameters)) is not None:
-            raise LinkError(problem)
+            if not (aboard.simulated and aboard.session.set_parameter(aboard.rules.demand, 0)):
+                raise LinkError(problem)
+            aboard.parameters[aboard.rules.demand] = 0.0
+            aboard.tell("info", f"{aboard.rules.demand} of the simulated vehicle has been set to 0")
         mission = self._list(raw)
         composed = compose(raw, mission, 0, aboard.frame)
         wire: tuple[RawItem, ...] = aboard.rules.wire(composed.items, aboard.home)
@@ -247,8 +264,8 @@ class LiveVehicle:
                 self._on_reply(one)
                 continue
             telemetry.feed(one)
-            if one.name in OBSTACLES:
-                self.obstacle_messages.append(one)
+            if self.on_obstacle is not None and one.name in OBSTACLES:
+                self.on_obstacle(one, telemetry)
         wall = session.wall()
         if telemetry.fix is not None:
             self.aboard.clock.heard(telemetry.fix.time, wall)
@@ -311,6 +328,7 @@ class LiveVehicle:
             self.editor.work()
         if not self._finished and self.editor.at_end():
             self._finished = True
+            self.finished_at = self.time
             self.aboard.tell("info", "the last waypoint has been reached")
         differs = not self.watch.lost and self.editor.differs()
         if self.watch.mission_differs(differs, wall) or wall >= self._ask_at:

@@ -46,6 +46,10 @@ class VehicleClock:
             self.rate = min(max((newest - before) / (wall - then), 0.1), FASTEST)
             self._mark = (newest, wall)
 
+    def restart(self) -> None:
+        """Count the seconds from the newest time stamp on: the flight begins."""
+        self._epoch, self._shown = self._newest, 0.0
+
     def now(self, wall: float) -> float:
         """Seconds since the start, at a time of the wall clock [s]."""
         silent = max(wall - self._heard - SILENCE, 0.0)

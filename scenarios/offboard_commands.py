@@ -1,0 +1,205 @@
+"""`sidestep offboard`: sense and avoid for a vehicle on a MAVLink link."""
+
+from __future__ import annotations
+
+import contextlib
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from scenarios.command_errors import FAILED, INTERRUPTED, OK, UNSAFE, expected_errors
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from avoidance.parameters import Parameters
+    from offboard.live.vehicle import LiveVehicle
+    from scenarios.live_flight import LiveFlight
+    from scenarios.live_mission import LiveMission
+
+
+def offboard(
+    *,
+    connect: Annotated[
+        str,
+        typer.Option(
+            metavar="URL", help="udpin://0.0.0.0:14540, tcpout://127.0.0.1:5760, serial:///dev/ttyUSB0:57600."
+        ),
+    ] = "udpin://0.0.0.0:14540",
+    mission: Annotated[
+        str | None,
+        typer.Option(
+            metavar="FILE|SCENARIO",
+            help="A .plan or WPL file, or a scenario; the one on the vehicle if not given.",
+        ),
+    ] = None,
+    obstacles: Annotated[
+        str | None,
+        typer.Option(
+            metavar="SOURCE",
+            help="mavlink: what the vehicle sends; scenario:FILE: a simulated radar; udp:PORT: JSON lines. "
+            "Else mavlink, or the mission's own where that is a scenario with obstacles.",
+        ),
+    ] = None,
+    dry_run: Annotated[bool, typer.Option("--dry-run", help="Decide and show; touch nothing.")] = False,
+    arm: Annotated[bool, typer.Option("--arm", help="Arm and start without asking.")] = False,
+    preset: Annotated[str | None, typer.Option(help="Avoidance: default or paper.")] = None,
+    wind_bound: Annotated[
+        float | None,
+        typer.Option(min=0.0, help="Largest steady wind to allow for [m/s]; the scenario's, or 3."),
+    ] = None,
+    timeout: Annotated[float, typer.Option(min=0.1, help="Wait so long for a vehicle [s].")] = 60.0,
+    output: Annotated[
+        Path | None,
+        typer.Option("-o", "--output", metavar="DIR", help="Where the run is written (else sidestep-runs)."),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print summary.json and nothing else.")] = False,
+) -> None:
+    """Fly a real or simulated vehicle's mission with sense and avoid: PX4 or ArduPilot, over MAVLink.
+
+    A human wins: after a mode change that is not ours nothing is commanded until the mission mode is back.
+    Ctrl-C ends the watch and writes the run; the vehicle flies on along its mission.
+
+    Exit codes: 0 flown safely; 1 a safety sphere was entered or the mission not completed; 2 bad input;
+    3 no vehicle, or the link lost for good; 130 interrupted.
+    """
+    from scenarios import run  # noqa: PLC0415
+    from scenarios.live_mission import mission_of, source_of  # noqa: PLC0415
+    from scenarios.target import check_target, free_directory  # noqa: PLC0415
+
+    with expected_errors():
+        wanted = mission_of(mission)
+        known = wanted.scenario
+        parameters = run.preset(preset or (known.preset if known is not None else "default"))
+        source = source_of(obstacles, wanted)
+        directory = output or free_directory(wanted.named(source), 0)
+        check_target(directory)
+        bound = wind_bound
+        if bound is None:
+            bound = 3.0 if known is None else known.wind.speed
+        code = _connect_and_fly(
+            connect,
+            wanted,
+            source,
+            parameters,
+            directory,
+            wind_bound=bound,
+            timeout=timeout,
+            touch=not dry_run,
+            arm=arm,
+            as_json=as_json,
+        )
+    raise typer.Exit(code)
+
+
+def _connect_and_fly(
+    url: str,
+    wanted: LiveMission,
+    source: object,
+    parameters: Parameters,
+    directory: Path,
+    *,
+    wind_bound: float,
+    timeout: float,
+    touch: bool,
+    arm: bool,
+    as_json: bool,
+) -> int:
+    """Connect, prepare, fly, judge, write, show; the exit code."""
+    from offboard.live.session import connect  # noqa: PLC0415
+    from offboard.live.starting import open_vehicle  # noqa: PLC0415
+    from scenarios.live_flight import LiveFlight, scenario_of  # noqa: PLC0415
+    from scenarios.live_mission import SourceChoice  # noqa: PLC0415
+    from scenarios.live_show import LiveStatus, say  # noqa: PLC0415
+
+    if not isinstance(source, SourceChoice):
+        raise TypeError("source must come from source_of")
+    say(f"Waiting for a vehicle on {url} (up to {timeout:g} s) ...")
+    session = connect(url, timeout)
+    with contextlib.closing(session):
+        vehicle = open_vehicle(session, wanted.frame, wind_bound=wind_bound, touch=touch)
+        vehicle.aboard.listener = lambda event: say(event.text, event.severity)
+        _prepare(vehicle, wanted, arm=arm)
+        scenario = scenario_of(vehicle, source.scenario or wanted.scenario, wanted.name)
+        made = source.make(vehicle, parameters)
+        with contextlib.closing(LiveFlight(scenario, vehicle, made, parameters, wanted.seed)) as flight:
+            with LiveStatus(vehicle, flight, source.text) as status:
+                for frame in _until_interrupted(flight):
+                    status.update(frame)
+            vehicle.aboard.listener = None
+            return _write(flight, directory, as_json=as_json)
+
+
+def _prepare(vehicle: LiveVehicle, wanted: LiveMission, *, arm: bool) -> None:
+    """Put the mission on the vehicle, arm it and start it, as far as that is asked for."""
+    from offboard.live import starting  # noqa: PLC0415
+    from offboard.live.autopilots import Mode  # noqa: PLC0415
+    from scenarios.live_show import say  # noqa: PLC0415
+
+    aboard = vehicle.aboard
+    kind = "simulated" if aboard.simulated else "not known to be simulated"
+    can = vehicle.performance
+    say(
+        f"{aboard.rules.name}, {kind}: {can.airspeed:g} m/s, bank limit {can.max_bank * 57.29578:.0f} deg, "
+        f"acceptance radius {can.acceptance_radius:g} m; mode {aboard.mode_name}, "
+        f"{'armed' if aboard.telemetry.armed else 'disarmed'}"
+    )
+    if wanted.raw is None or not vehicle.touch:
+        vehicle.adopt_mission()
+    else:
+        begin = wanted.begin
+        starting.check_distance(vehicle, *begin)
+        vehicle.upload_raw(starting.with_take_off(wanted.raw, vehicle))
+    if not vehicle.touch:
+        return
+    flying = aboard.telemetry.armed and aboard.mode is Mode.MISSION
+    if not (flying or arm or aboard.simulated):
+        _ask(f"{'Start the mission' if aboard.telemetry.armed else 'ARM the vehicle and start its mission'}?")
+    starting.arm(vehicle)
+    starting.fly_mission(vehicle)
+
+
+def _ask(question: str) -> None:
+    """Go on only if a human says yes."""
+    from scenarios.errors import ScenarioError  # noqa: PLC0415
+
+    if not sys.stdin.isatty():
+        raise ScenarioError("--arm", "needed: the vehicle may be real, and nobody is there to be asked")
+    if not typer.confirm(question, err=True):
+        raise ScenarioError("--arm", "not armed, nothing was started")
+
+
+def _until_interrupted(flight: LiveFlight) -> Iterator[object]:
+    """The flight's frames, up to the first Ctrl-C."""
+    from scenarios.cli import stop_on_interrupt  # noqa: PLC0415
+
+    with stop_on_interrupt() as stop:
+        for frame in flight:
+            yield frame
+            if stop:
+                return
+
+
+def _write(flight: LiveFlight, directory: Path, *, as_json: bool) -> int:
+    """Judge, write, show; the exit code."""
+    from scenarios.live_show import ending_words, say  # noqa: PLC0415
+    from scenarios.record import summary_text, write_run  # noqa: PLC0415
+    from scenarios.report import write_report  # noqa: PLC0415
+    from scenarios.show import results  # noqa: PLC0415
+
+    flown = flight.result()
+    judged = flight.judged(flown)
+    write_run(directory, flown, judged, write_report)
+    if as_json:
+        sys.stdout.write(summary_text(judged.summary))
+    else:
+        if (words := ending_words(flight.ending)) is not None:
+            say(words, "alarm")
+        results(flown, judged, directory)
+    if flight.ending == "interrupted":
+        return INTERRUPTED
+    if flight.ending == "link lost":
+        return FAILED
+    return OK if judged.summary["completed"] and not judged.summary["violations"] else UNSAFE
