@@ -324,6 +324,8 @@ class Autopilot:
             self._commands.change_mode(message.custom_mode)
 
     def _set_current(self, link: int, message: Message) -> None:
+        header = message.get_header()
+        self._missions.heard((link, header.srcSystem, header.srcComponent))
         if self.captain.set_current(message.seq):
             self.send_message(link, mavlink.MAVLINK_MSG_ID_MISSION_CURRENT)
 

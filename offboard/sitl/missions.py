@@ -6,18 +6,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Protocol
 
-from offboard.sitl.dialect import Extended, Message, mavlink
+from offboard.sitl.dialect import Message, mavlink
+from offboard.sitl.downloads import MISSION, Downloads, Partner
 from offboard.sitl.flavour import Flavour
-from offboard.sitl.items import WireItem, checksum
+from offboard.sitl.items import WireItem
 
-MISSION = mavlink.MAV_MISSION_TYPE_MISSION
 TYPES = (MISSION, mavlink.MAV_MISSION_TYPE_FENCE, mavlink.MAV_MISSION_TYPE_RALLY)
 MOST_ATTEMPTS = 25
 """How often an item is asked for before an upload is given up."""
+MOST_ACKNOWLEDGEMENTS = 3
+"""How often the end of an upload is acknowledged over a link that loses messages."""
 ACCEPTED = mavlink.MAV_MISSION_ACCEPTED
-
-Partner = tuple[int, int, int]
-"""Link, system and component of whoever talks."""
 
 
 class Owner(Protocol):
@@ -83,16 +82,19 @@ class MissionProtocol:
         self._retry = retry
         self._upload: Upload | None = None
         self._finished: tuple[Partner, int, int] | None = None
+        self._repeat: Upload | None = None
+        self._lossy: set[Partner] = set()
         self._ints: set[int] = set()
+        downloads = self._downloads = Downloads(self.lists, flavour, owner.current_item, send)
         self._handlers: dict[str, Callable[[Partner, Message, float], None]] = {
             "MISSION_COUNT": self._count,
             "MISSION_ITEM": self._item,
             "MISSION_ITEM_INT": self._item,
             "MISSION_WRITE_PARTIAL_LIST": self._write_partial,
-            "MISSION_REQUEST_LIST": self._list,
-            "MISSION_REQUEST_PARTIAL_LIST": self._list_partial,
-            "MISSION_REQUEST": self._request,
-            "MISSION_REQUEST_INT": self._request,
+            "MISSION_REQUEST_LIST": downloads.count,
+            "MISSION_REQUEST_PARTIAL_LIST": downloads.part,
+            "MISSION_REQUEST": downloads.item,
+            "MISSION_REQUEST_INT": self._request_int,
             "MISSION_ACK": self._ack,
             "MISSION_CLEAR_ALL": self._clear,
         }
@@ -102,6 +104,7 @@ class MissionProtocol:
         handler = self._handlers.get(message.get_type())
         if handler is None:
             return False
+        self.heard(partner)
         kind = getattr(message, "mission_type", MISSION)
         if kind == mavlink.MAV_MISSION_TYPE_ALL and message.get_type() == "MISSION_CLEAR_ALL":
             handler(partner, message, now)
@@ -111,8 +114,14 @@ class MissionProtocol:
             handler(partner, message, now)
         return True
 
+    def heard(self, partner: Partner) -> None:
+        """Someone goes on to something else, and so has heard that the upload is complete."""
+        if self._repeat is not None and partner == self._repeat.partner:
+            self._repeat = None
+
     def step(self, now: float) -> None:
         """Ask again for an item that does not come; give up after a while."""
+        self._acknowledge_again(now)
         upload = self._upload
         if upload is None or now < upload.asked_at + self._retry - 1e-9:
             return
@@ -122,7 +131,22 @@ class MissionProtocol:
             self._owner.gave_up()
             return
         upload.attempts += 1
+        self._lossy.add(upload.partner)
         self._ask(upload, now)
+
+    def _acknowledge_again(self, now: float) -> None:
+        """Say once more that an upload is complete, to a partner whose link has lost something before.
+
+        MAVSDK does not ask: it waits for an acknowledgement until it gives the upload up.
+        """
+        repeat = self._repeat
+        if repeat is None or now < repeat.asked_at + self._retry - 1e-9:
+            return
+        self._answer(repeat.partner, ACCEPTED, repeat.kind)
+        repeat.asked_at = now
+        repeat.attempts += 1
+        if repeat.attempts > MOST_ACKNOWLEDGEMENTS:
+            self._repeat = None
 
     def store(self, kind: int, items: Sequence[WireItem]) -> None:
         """Keep a list as it is."""
@@ -204,6 +228,9 @@ class MissionProtocol:
             return
         self._upload = None
         self._finished = (upload.partner, upload.kind, upload.end - 1)
+        if upload.partner in self._lossy:
+            self._repeat = upload
+            upload.attempts, upload.asked_at = 1, now
         self._replace(upload.kind, upload.items, upload.flagged, upload.partner)
 
     def _replace(
@@ -252,6 +279,10 @@ class MissionProtocol:
         elif message.type != ACCEPTED:
             self._upload = None
 
+    def _request_int(self, partner: Partner, message: Message, now: float) -> None:
+        self._ints.add(partner[0])
+        self._downloads.item(partner, message, now)
+
     def _clear(self, partner: Partner, message: Message, now: float) -> None:  # noqa: ARG002
         wanted = TYPES if message.mission_type == mavlink.MAV_MISSION_TYPE_ALL else (message.mission_type,)
         if self._upload is not None:
@@ -261,56 +292,5 @@ class MissionProtocol:
             self._replace(kind, (), None)
         self._answer(partner, ACCEPTED, message.mission_type)
 
-    # Down
-
-    def _list(self, partner: Partner, message: Message, now: float) -> None:  # noqa: ARG002
-        link, system, component = partner
-        kind = message.mission_type
-        items = self.lists[kind]
-        answer = mavlink.MAVLink_mission_count_message(system, component, len(items), kind)
-        self._send(link, Extended(answer, checksum(items)) if self._flavour.atomic else answer)
-
-    def _list_partial(self, partner: Partner, message: Message, now: float) -> None:  # noqa: ARG002
-        """A part of the list: its items, one after the other."""
-        kind, items = message.mission_type, self.lists[message.mission_type]
-        start = message.start_index
-        end = len(items) - 1 if message.end_index == -1 else message.end_index
-        if not 0 <= start <= end < len(items):
-            self._answer(partner, mavlink.MAV_MISSION_INVALID_SEQUENCE, kind)
-            return
-        for seq in range(start, end + 1):
-            self._send(partner[0], self._item_message(partner, seq, kind, ints=True))
-
-    def _request(self, partner: Partner, message: Message, now: float) -> None:  # noqa: ARG002
-        kind, seq = message.mission_type, message.seq
-        if not 0 <= seq < len(self.lists[kind]):
-            self._answer(partner, mavlink.MAV_MISSION_INVALID_SEQUENCE, kind)
-            return
-        ints = message.get_type() == "MISSION_REQUEST_INT"
-        if ints:
-            self._ints.add(partner[0])
-        self._send(partner[0], self._item_message(partner, seq, kind, ints))
-
-    def _item_message(self, partner: Partner, seq: int, kind: int, ints: bool) -> Message:
-        item, plain = self.lists[kind][seq], self._flavour.download_frames
-        current = int(not plain and kind == MISSION and seq == self._owner.current_item())
-        frame = PLAIN.get(item.frame, item.frame) if plain else item.frame
-        make, x, y = mavlink.MAVLink_mission_item_message, item.latitude_deg, item.longitude_deg
-        if ints:
-            make, x, y = mavlink.MAVLink_mission_item_int_message, item.x, item.y
-        to, parameters = partner[1:], (item.param1, item.param2, item.param3, item.param4)
-        rest = (item.command, current, item.autocontinue, *parameters, x, y, item.z, kind)
-        return make(*to, seq, frame, *rest)
-
     def _answer(self, partner: Partner, result: int, kind: int) -> None:
-        link, system, component = partner
-        answer = mavlink.MAVLink_mission_ack_message(system, component, result, kind)
-        known = self.lists.get(kind, ())
-        self._send(link, Extended(answer, checksum(known)) if self._flavour.atomic else answer)
-
-
-PLAIN = {
-    mavlink.MAV_FRAME_GLOBAL_INT: mavlink.MAV_FRAME_GLOBAL,
-    mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT: mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT,
-}
-"""The frame in which ArduPilot gives an item back."""
+        self._downloads.answer(partner, result, kind)

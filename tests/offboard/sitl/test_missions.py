@@ -180,6 +180,18 @@ def test_a_lost_acknowledgement_is_given_again():
     assert ground.read("MISSION_ACK") == []
 
 
+def test_over_a_link_that_loses_messages_the_end_is_acknowledged_more_than_once():
+    ground = station("px4")
+    ground.send(mavlink.MAVLink_mission_count_message(1, 1, 3, 0))
+    ground.fly(0.3)  # what was asked for does not come at once
+    ground.send(*mission())
+    ground.read()
+    assert len([m for m in ground.fly(3.0) if m.get_type() == "MISSION_ACK"]) == 3
+    ground.upload(mission())
+    ground.send(mavlink.MAVLink_mission_set_current_message(1, 1, 1))  # has heard it
+    assert [m for m in ground.fly(3.0) if m.get_type() == "MISSION_ACK"] == []
+
+
 def test_a_count_that_comes_twice_begins_once():
     ground = station("px4")
     count = mavlink.MAVLink_mission_count_message(1, 1, 3, 0)
