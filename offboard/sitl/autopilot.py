@@ -13,10 +13,11 @@ from offboard.sitl.ardupilot import ARDUPILOT, MISSION_TOTAL
 from offboard.sitl.captain import Captain
 from offboard.sitl.commands import Command, Commands
 from offboard.sitl.dialect import Message, Packed, mavlink
+from offboard.sitl.downloads import MISSION
 from offboard.sitl.flavour import Flavour, Role, Say
 from offboard.sitl.items import WireItem
 from offboard.sitl.links import Links
-from offboard.sitl.missions import MISSION, MissionProtocol
+from offboard.sitl.missions import MissionProtocol
 from offboard.sitl.parameters import Parameters
 from offboard.sitl.px4 import PX4
 from offboard.sitl.services import Handler, handlers
