@@ -19,6 +19,7 @@ from scenarios import (
     fmu_commands,
     hil_commands,
     offboard_commands,
+    paper_commands,
     sitl_commands,
 )
 from scenarios.command_errors import INTERRUPTED, OK, UNSAFE, expected_errors
@@ -39,6 +40,7 @@ app.add_typer(fmu_commands.app)
 app.add_typer(hil_commands.app)
 app.command()(compare_commands.compare)
 app.command()(offboard_commands.offboard)
+app.command()(paper_commands.paper)
 app.command()(sitl_commands.sitl)
 
 
