@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,9 +18,11 @@ from avoidance.parameters import DEFAULT, Parameters
 from avoidance.passages import Gap, way_with_orbits
 from avoidance.replacement import Replacements
 from avoidance.route_check import Blocked, first_blocked_leg
+from avoidance.second_thoughts import SecondThoughts, second_words
 from avoidance.tracking import Tracker
 from avoidance.types import (
     Decision,
+    Detour,
     Hold,
     Keep,
     Ownship,
@@ -85,6 +88,7 @@ class Agent:
         self._tracker = Tracker(parameters)
         self._escape = Escape(performance)
         self._replacements = Replacements(performance, parameters, geofence)
+        self._second_thoughts = SecondThoughts()
         self._checked: int | None = None
         self._failures = 0
         self._checked_route: Route | None = None
@@ -122,6 +126,7 @@ class Agent:
         known = known_obstacles(picture, own, route, self._performance, self._parameters)
         known = within_fence(known, self._geofence, own, self._parameters)
         decision = self._decide(own, route, known)
+        self._second_thoughts.learn(decision, known)
         if isinstance(decision, Keep | Hold):
             self._checked_route, self._checked = route, picture.version
         if decision.route is not None:
@@ -144,7 +149,8 @@ class Agent:
             blocked = first_conflict(own, route, known, self._performance)
         if blocked is not None:
             return self._avoid(own, route, known, blocked)
-        return self._resume(own, route, known)
+        again = self._choose_again(own, route, known)
+        return self._resume(own, route, known) if again is None else again
 
     def _avoid(self, own: Ownship, route: Route, known: Known, blocked: Blocked) -> Decision:
         gap = Gap.of(own, route, known, blocked, self._performance, self._parameters)
@@ -163,6 +169,18 @@ class Agent:
             words = f"{threat_words(blocked.threat)}; no way round is known yet"
             return Keep(why=words, threat=blocked.threat, rung=Rung.ORBIT)
         return self._wait(gap)
+
+    def _choose_again(self, own: Ownship, route: Route, known: Known) -> Decision | None:
+        """Another waypoint that meets every constraint, where one put in no longer does."""
+        doubt = self._second_thoughts.first(own, route, known)
+        if doubt is None or self._holding:
+            return None
+        gap = Gap.of(own, route, known, doubt, self._performance, self._parameters)
+        way = way_with_orbits(gap, self._way, self._rng)
+        if not isinstance(way, Detour) or way.rung is not Rung.WAYPOINT:
+            return None
+        self._avoiding |= frozenset(doubt.threat.ids)
+        return replace(way, why=second_words(doubt.threat, way))
 
     def _move(self, gap: Gap) -> Decision | None:
         """Another stand-in for the waypoint that no way leads to."""
