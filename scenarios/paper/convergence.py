@@ -163,6 +163,8 @@ def _particles(curve: Curve, iteration: Iteration) -> Figure:
     traces.append(_optimum_line(curve, ends))
     layout = layout_of("particle", "fitness f", height=340)
     layout["yaxis"] |= {"tickformat": ",.0f"}
+    if iteration.costs.max() > 2.0 * iteration.costs.min():
+        layout["yaxis"] |= {"type": "log"}
     return {"data": traces, "layout": layout}
 
 
@@ -183,7 +185,7 @@ def _convergence(curves: Sequence[Curve]) -> Figure:
             )
     last = len(curves[0].runs[0]) - 1
     traces.append(_optimum_line(curves[-1], [0, last]))
-    layout = layout_of("iteration", "best feasible fitness f", height=380)
+    layout = layout_of("iteration", "best feasible fitness f", height=440)
     layout["yaxis"] |= {"tickformat": ",.0f"}
     return {"data": traces, "layout": layout}
 

@@ -17,12 +17,12 @@ Window = tuple[float, float, float, float]
 
 WINDOWS: dict[str, dict[str, Window]] = {
     "fig17": {
-        "Obstacle 1, to scale": (122e3, 148e3, 5e3, 18e3),
-        "Obstacles 2 to 4, to scale": (277e3, 303e3, 12e3, 25e3),
+        "Obstacle 1, to scale": (124e3, 144e3, 7e3, 17e3),
+        "Obstacles 2 to 4, to scale": (279e3, 299e3, 13e3, 23e3),
     },
     "fig18": {
-        "Obstacle 1, to scale": (122e3, 148e3, 5e3, 18e3),
-        "Obstacles 2 to 4, to scale": (277e3, 303e3, 12e3, 25e3),
+        "Obstacle 1, to scale": (124e3, 144e3, 7e3, 17e3),
+        "Obstacles 2 to 4, to scale": (279e3, 299e3, 13e3, 23e3),
     },
     "fig19": {"The hill, to scale": (136e3, 164e3, 6e3, 20e3)},
     "fig20": {"The obstacle, to scale": (0.0, 22e3, -5e3, 6e3)},

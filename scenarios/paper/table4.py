@@ -21,8 +21,8 @@ OURS = ("pso", "gcpso", "mpso", "ga", "sa", "theta-mafoa", "exact")
 FIGURES = {"fig29": "ga", "fig30": "sa", "fig31": "theta-mafoa", "fig32": "pso"}
 """Whose path each figure shows."""
 CLOSE_UPS = {
-    "obstacle 2": (122_000.0, 148_000.0, 8_000.0, 17_500.0),
-    "obstacles 3 to 5": (277_000.0, 303_000.0, 13_500.0, 23_000.0),
+    "obstacle 2": (126_500.0, 143_500.0, 8_500.0, 17_000.0),
+    "obstacles 3 to 5": (281_500.0, 298_500.0, 13_500.0, 22_000.0),
 }
 
 

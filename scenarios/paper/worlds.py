@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from importlib.resources import as_file, files
 
 from avoidance.parameters import Parameters
@@ -77,25 +78,30 @@ def field_job(options: Options, row: str, index: int, planner: str) -> Job:
 
     The world is the one that `sidestep fly random --obstacles N --seed INDEX` flies.
     """
+    return _job(options, f"field-{row.replace('+', '')}-{index}", _field(row, index), planner)
+
+
+@cache
+def _field(row: str, index: int) -> Scenario:
+    """World `index` of a row."""
     count, _, more = row.partition("+")
-    scenario = load("random")
+    scenario = _loaded("random")
     if more == "hill":
-        hill = load("hill").obstacles
+        hill = _loaded("hill").obstacles
         scenario = replace(scenario, obstacles=tuple(replace(o, id=9000 + o.id) for o in hill))
     elif more == "moving":
         scenario = replace(scenario, traffic=INTRUDERS)
-    scenario = prepare(scenario, index, obstacles=int(count))
-    return _job(options, f"field-{count}{more}-{index}", replace(scenario, seed=index), planner)
+    return replace(prepare(scenario, index, obstacles=int(count)), seed=index)
 
 
 def table4_job(options: Options, planner: str) -> Job:
     """Table 4's world, flown by a planner from what the radar shows at 10 km."""
-    return _job(options, "table4", load("table4"), planner)
+    return _job(options, "table4", _loaded("table4"), planner)
 
 
 def published_job(options: Options, row: ListRow) -> Job:
     """A published waypoint list, flown as it is."""
-    scenario = load("table4")
+    scenario = _loaded("table4")
     height = {point[:2]: point[2] for point in published().mission}
     mission = tuple(Point(x, y, height.get((x, y), 200.0)) for x, y in row.waypoints)
     world = replace(scenario, mission=mission)
@@ -115,6 +121,12 @@ def scene(name: str) -> Scenario:
         return load(name)
     with as_file(place) as path:
         return load(path)
+
+
+@cache
+def _loaded(name: str) -> Scenario:
+    """A scenario of the catalogue, read once."""
+    return load(name)
 
 
 def _job(options: Options, name: str, scenario: Scenario, planner: str, *, avoidance: bool = True) -> Job:

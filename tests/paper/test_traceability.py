@@ -9,9 +9,7 @@ ROOT = Path(__file__).parents[2]
 PACKAGES = ("avoidance", "fmu", "offboard", "scenarios")
 OTHER_SOURCES = {"offboard/geodesic.py", "offboard/frames.py"}  # cite Vincenty's equations, not the paper's
 
-UNUSED = {
-    "Eq. 31": "a convergence condition in a proof; nothing computes it in flight",
-}
+UNUSED: dict[str, str] = {}  # equation or algorithm, and why nothing uses it
 NUMBERS = re.compile(r"(Eqs?\.|Algorithms?) ([^A-Za-z\]:;.]*(?:(?:and|to) [(\d][^A-Za-z\]:;.]*)*)")
 
 
