@@ -82,8 +82,9 @@ class FmuLibrary:
                 archive.extractall(folder)
             return cls(folder)
         except Exception as error:  # fmpy raises bare Exception when the library is missing
+            message = _no_library(folder) or str(error)
             shutil.rmtree(folder, ignore_errors=True)
-            raise PlantError("load", 0.0, "unusable", f"{path}: {error}") from error
+            raise PlantError("load", 0.0, "unusable", f"{path}: {message}") from error
 
     def _load(self, description: ET.Element) -> tuple[Any, Any]:
         from fmpy.fmi3 import FMU3Slave, fmi3LogMessageCallback  # noqa: PLC0415  (slow import)
@@ -313,3 +314,17 @@ def _convert(name: str, kind: str, value: float) -> float | int | bool:
     if not math.isfinite(value) or value != int(value):
         raise ValueError(f"{name} = {value!r} is not a whole number")
     return int(value) if kind == "Int32" else bool(value)
+
+
+def _no_library(folder: Path) -> str:
+    """That an unpacked FMU has no library for this machine, and what helps; nothing if it has one."""
+    from fmpy import platform_tuple  # noqa: PLC0415  (slow import)
+
+    binaries = folder / "binaries"
+    if not (folder / "modelDescription.xml").is_file() or (binaries / platform_tuple).is_dir():
+        return ""
+    carried = sorted(each.name for each in binaries.iterdir()) if binaries.is_dir() else []
+    others = f"only for {', '.join(carried)}" if carried else "nor for any other"
+    return (
+        f"no library for this machine ({platform_tuple}), {others}; build it here with `python -m fmu.build`"
+    )
