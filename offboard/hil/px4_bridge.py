@@ -143,6 +143,7 @@ class Px4Bridge:
 
         Yields True after each step; `metronome.punctuality` tells how late they were. Ends with `LinkLost`.
         """
+        self.simulation.timing.start()
         self._measure(self.simulation.truth)  # what is computed once is computed before time begins
         self.begin()
         next_heartbeat = 0.0
