@@ -14,6 +14,7 @@ import typer
 from scenarios.command_errors import BAD_INPUT, OK, UNSAFE, expected_errors
 
 if TYPE_CHECKING:
+    from scenarios.hil_run import Course
     from scenarios.hil_setup import HilOptions
 
 app = typer.Typer(
@@ -62,6 +63,12 @@ SelfTestOption = Annotated[
 ]
 Seconds = Annotated[float, typer.Option(min=1.0, max=86400.0, help="Simulated time of the self-test [s].")]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the summary as JSON and nothing else.")]
+WithAvoidance = Annotated[
+    str | None,
+    typer.Option(metavar="SCENARIO", help="Fly it with sense and avoid: `sidestep offboard` runs beside it."),
+]
+Connect = Annotated[str, typer.Option(metavar="URL", help="With it: where MAVSDK meets the autopilot.")]
+Arm = Annotated[bool, typer.Option("--arm", help="With it: arm and start without asking.")]
 DEFAULT_HOME = "47.397742,8.545594,488,0"
 DEFAULT_START = "2025-06-21T08:00Z"
 
@@ -98,6 +105,9 @@ def px4(
     output: Output = None,
     until: Until = None,
     timeout: Timeout = 0.0,
+    with_avoidance: WithAvoidance = None,
+    connect: Connect = "udpin://0.0.0.0:14540",
+    arm: Arm = False,
     self_test: SelfTestOption = False,
     seconds: Seconds = 60.0,
     real_time: Annotated[
@@ -121,10 +131,11 @@ def px4(
         )  # fmt: skip
         if self_test:
             _self_test(options, seconds, real_time=real_time, as_json=as_json)
+        options, course = _course(options, output, until, timeout, as_json, with_avoidance, connect, arm)
         if serial is not None:
-            run_px4_serial(options, serial, mission_link, output, until, as_json=as_json)
+            run_px4_serial(options, serial, mission_link, course)
         else:
-            run_px4_tcp(options, (host, tcp), speed, output, until, timeout, as_json=as_json)
+            run_px4_tcp(options, (host, tcp), speed, course)
 
 
 @app.command()
@@ -146,6 +157,9 @@ def ardupilot(
     output: Output = None,
     until: Until = None,
     timeout: Timeout = 0.0,
+    with_avoidance: WithAvoidance = None,
+    connect: Connect = "udpin://0.0.0.0:14540",
+    arm: Arm = False,
     self_test: SelfTestOption = False,
     seconds: Seconds = 60.0,
     as_json: AsJson = False,
@@ -165,7 +179,8 @@ def ardupilot(
         )  # fmt: skip
         if self_test:
             _self_test(options, seconds, real_time=False, as_json=as_json)
-        run_ardupilot(options, (host, udp), output, until, timeout, as_json=as_json)
+        options, course = _course(options, output, until, timeout, as_json, with_avoidance, connect, arm)
+        run_ardupilot(options, (host, udp), course)
 
 
 @app.command()
@@ -175,6 +190,27 @@ def airframes() -> None:
 
     for name in airframe_names():
         typer.echo(f"{name:<18}{load_airframe(name).description}")
+
+
+def _course(
+    options: HilOptions,
+    output: Path | None,
+    until: float | None,
+    timeout: float,
+    as_json: bool,
+    scenario: str | None,
+    url: str,
+    arm: bool,
+) -> tuple[HilOptions, Course]:
+    """How the run is conducted; a scenario also says where, when and in what wind."""
+    from scenarios.hil_run import Course  # noqa: PLC0415
+
+    if scenario is None:
+        return options, Course(output, until, timeout, as_json)
+    from scenarios.hil_avoidance import Together  # noqa: PLC0415
+
+    together = Together.of(scenario, url, output, arm=arm, as_json=as_json)
+    return together.options(options), Course(output, until, timeout, as_json, together)
 
 
 def _self_test(options: HilOptions, seconds: float, *, real_time: bool, as_json: bool) -> None:

@@ -12,7 +12,7 @@ _PRIORITY = 10
 
 @contextlib.contextmanager
 def real_time() -> Iterator[str]:
-    """Within it this process goes before all ordinary ones, where the system allows that.
+    """Within it this process, and none that it starts, goes before all ordinary ones, where that is allowed.
 
     Python's garbage collector rests meanwhile: it would make a step late now and then. The loop leaves no
     reference cycles behind, so nothing piles up.
@@ -39,7 +39,7 @@ def _raise_priority() -> int | None:
         return None  # not Linux
     before = os.sched_getscheduler(0)
     try:
-        os.sched_setscheduler(0, os.SCHED_RR, os.sched_param(_PRIORITY))
+        os.sched_setscheduler(0, os.SCHED_RR | os.SCHED_RESET_ON_FORK, os.sched_param(_PRIORITY))
     except OSError:
         return None
-    return before if before == os.SCHED_OTHER else os.SCHED_OTHER
+    return before & ~os.SCHED_RESET_ON_FORK

@@ -69,25 +69,28 @@ class HilRecorder:
             "link": {name: getattr(counts, name) for name in getattr(counts, "__slots__", ())},
         }
 
-    def write(self, directory: Path, summary: dict[str, Any]) -> None:
-        """Write `track.csv`, `events.jsonl` and `summary.json` into a directory of their own.
+    def write(self, directory: Path, summary: dict[str, Any], prefix: str = "") -> None:
+        """Write `track.csv`, `events.jsonl` and `summary.json`, with a prefix where they join another run's.
 
         Raises
         ------
         RunDirectoryError
-            If the directory exists and holds anything, or cannot be written.
+            If they cannot be written; without a prefix also if the directory holds anything.
         """
-        check_directory(directory)
+        if not prefix:
+            check_directory(directory)
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(COLUMNS)
         writer.writerows(self.rows)
         try:
             directory.mkdir(parents=True, exist_ok=True)
-            (directory / "track.csv").write_text(text.getvalue(), encoding="utf-8")
+            (directory / f"{prefix}track.csv").write_text(text.getvalue(), encoding="utf-8")
             lines = "".join(json.dumps(event) + "\n" for event in self.events)
-            (directory / "events.jsonl").write_text(lines, encoding="utf-8")
-            (directory / "summary.json").write_text(json.dumps(summary, indent=2) + "\n", encoding="utf-8")
+            (directory / f"{prefix}events.jsonl").write_text(lines, encoding="utf-8")
+            (directory / f"{prefix}summary.json").write_text(
+                json.dumps(summary, indent=2) + "\n", encoding="utf-8"
+            )
         except OSError as error:
             raise RunDirectoryError(directory, f"cannot be written ({error})") from error
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import contextlib
 import json
 import signal
+import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
 from typing import Any
@@ -20,6 +22,7 @@ from offboard.hil.json_bridge import JsonBridge
 from offboard.hil.pipes import SerialPipe, TcpServer, UdpLinks, UdpPort, parse_links
 from offboard.hil.px4_bridge import Px4Bridge
 from scenarios.command_errors import INTERRUPTED, OK
+from scenarios.hil_avoidance import PREFIX, Together, end
 from scenarios.hil_priority import real_time
 from scenarios.hil_record import HilRecorder, check_directory
 from scenarios.hil_setup import HilOptions, Rig
@@ -29,113 +32,107 @@ _EVERY = 64
 """Steps from one look at the clock to the next."""
 
 
-def run_ardupilot(
-    options: HilOptions,
-    address: tuple[str, int],
-    output: Path | None,
-    until: float | None,
-    timeout: float,
-    *,
-    as_json: bool,
-) -> None:
+@dataclass(frozen=True, slots=True)
+class Course:
+    """How a run is conducted: how long, what is written, who else takes part."""
+
+    output: Path | None = None
+    """Where it is written."""
+    until: float | None = None
+    """Simulated time at which it ends [s]; None: at Ctrl-C."""
+    timeout: float = 0.0
+    """An autopilot that is silent for so long is given up [s]; 0: never."""
+    as_json: bool = False
+    """Print the summary as JSON and nothing else."""
+    together: Together | None = None
+    """A scenario that is flown with sense and avoid beside it."""
+
+    def check(self) -> None:
+        """Find out before the flight whether it can be written; `RunDirectoryError` if not."""
+        if self.output is not None and self.together is None:
+            check_directory(self.output)
+
+    def say(self, text: str) -> None:
+        """Tell the user, unless a program is listening."""
+        if not self.as_json:
+            typer.echo(text, err=True)
+
+
+def run_ardupilot(options: HilOptions, address: tuple[str, int], course: Course) -> None:
     """Serve ArduPilot's JSON protocol; always ends with `typer.Exit`."""
-    _prepare(output)
+    course.check()
     with Rig(options) as rig:
         port = UdpPort(address[1], address[0])
         bridge = rig.json_bridge(port)
-        _say(f"waiting for ArduPilot on UDP {address[0]}:{port.port} (--model JSON:{address[0]})", as_json)
+        course.say(f"waiting for ArduPilot on UDP {address[0]}:{port.port} (--model JSON:{address[0]})")
         with contextlib.closing(port):
-            _serve(rig, bridge, bridge.serve(), output, until, timeout, as_json=as_json)
+            _serve(rig, bridge, bridge.serve(), course)
 
 
-def run_px4_tcp(
-    options: HilOptions,
-    address: tuple[str, int],
-    speed: float,
-    output: Path | None,
-    until: float | None,
-    timeout: float,
-    *,
-    as_json: bool,
-) -> None:
+def run_px4_tcp(options: HilOptions, address: tuple[str, int], speed: float, course: Course) -> None:
     """Serve PX4's simulator API over TCP; always ends with `typer.Exit`."""
-    _prepare(output)
+    course.check()
     with Rig(options) as rig:
         server = TcpServer(address[1], address[0])
         bridge = rig.px4_bridge(speed)
-        _say(f"waiting for PX4 on TCP {address[0]}:{server.port}", as_json)
+        course.say(f"waiting for PX4 on TCP {address[0]}:{server.port}")
         with contextlib.closing(server):
-            _serve(rig, bridge, bridge.serve(server), output, until, timeout, as_json=as_json)
+            _serve(rig, bridge, bridge.serve(server), course)
 
 
-def run_px4_serial(
-    options: HilOptions,
-    serial: str,
-    mission_link: str,
-    output: Path | None,
-    until: float | None,
-    *,
-    as_json: bool,
-) -> None:
+def run_px4_serial(options: HilOptions, serial: str, mission_link: str, course: Course) -> None:
     """Fly a board in real time over a serial port; always ends with `typer.Exit`."""
     addresses = parse_links(mission_link)
-    _prepare(output)
+    course.check()
     with Rig(options) as rig, UdpLinks(addresses) as links:
         bridge = rig.px4_bridge(1.0)
         pipe = SerialPipe(serial)
         where = ", ".join(f"{host}:{port}" for host, port in addresses)
         with contextlib.closing(pipe), real_time() as urgent:
-            _say(f"flying the board on {serial} in real time ({urgent}); MAVLink goes on to {where}", as_json)
-            _serve(rig, bridge, bridge.drive(pipe, links), output, until, 0.0, as_json=as_json)
+            course.say(f"flying the board on {serial} in real time ({urgent}); MAVLink goes on to {where}")
+            _serve(rig, bridge, bridge.drive(pipe, links), course)
 
 
-def _prepare(output: Path | None) -> None:
-    if output is not None:
-        check_directory(output)
-
-
-def _serve(
-    rig: Rig,
-    bridge: JsonBridge | Px4Bridge,
-    steps: Iterator[bool],
-    output: Path | None,
-    until: float | None,
-    timeout: float,
-    *,
-    as_json: bool,
-) -> None:
+def _serve(rig: Rig, bridge: JsonBridge | Px4Bridge, steps: Iterator[bool], course: Course) -> None:
     """Step until it is over, show how it goes, write and print what came of it."""
     recorder = HilRecorder(rig.faults)
     rig.simulation.watch = recorder
-    status = Status(rig.simulation, quiet=as_json)
+    together = course.together
+    status = Status(rig.simulation, quiet=course.as_json or together is not None)
     lost = ""
+    companion = None if together is None else together.begin()
     with stop_on_interrupt() as stop:
         try:
-            _loop(rig, bridge, steps, until, timeout, stop, status)
+            _loop(rig, bridge, steps, course, stop, status, companion)
         except LinkLost as error:
             lost = str(error)
+        code = OK if companion is None else end(companion)
     status.close()
-    summary = recorder.summary(bridge.counts) | {"ending": lost or ("interrupted" if stop else "time is up")}
+    ending = lost or ("interrupted" if stop else "time is up" if companion is None else "the mission is over")
+    summary = recorder.summary(bridge.counts) | {"ending": ending}
     if isinstance(bridge, Px4Bridge) and bridge.metronome.punctuality.steps:
         summary["real_time"] = punctuality_json(bridge.metronome.punctuality)
-    if output is not None:
-        recorder.write(output, summary)
-    _tell(summary, output, as_json=as_json)
+    if together is not None and together.directory.is_dir():
+        summary |= together.truth(recorder.rows)
+        recorder.write(together.directory, summary, PREFIX)
+    elif together is None and course.output is not None:
+        recorder.write(course.output, summary)
+    _tell(summary, course)
     if lost:
         raise LinkError(lost)
-    raise typer.Exit(INTERRUPTED if stop else OK)
+    raise typer.Exit(INTERRUPTED if stop else code)
 
 
 def _loop(
     rig: Rig,
     bridge: JsonBridge | Px4Bridge,
     steps: Iterator[bool],
-    until: float | None,
-    timeout: float,
+    course: Course,
     stop: list[int],
     status: Status,
+    companion: subprocess.Popen[bytes] | None,
 ) -> None:
-    heard, count = time.monotonic(), 0
+    heard, count, until = time.monotonic(), 0, course.until
     while not stop and (until is None or rig.simulation.truth.time < until):
         moved = next(steps)
         count += 1
@@ -143,8 +140,10 @@ def _loop(
             continue
         now = time.monotonic()
         heard = now if moved else heard
-        if timeout and now - heard > timeout:
-            raise LinkLost(f"the autopilot has been silent for {timeout:g} s")
+        if course.timeout and now - heard > course.timeout:
+            raise LinkLost(f"the autopilot has been silent for {course.timeout:g} s")
+        if companion is not None and companion.poll() is not None:
+            return
         if bridge.connected:
             status.update(_extra(bridge))
 
@@ -163,14 +162,10 @@ def _extra(bridge: JsonBridge | Px4Bridge) -> str:
     return ", ".join(words)
 
 
-def _say(text: str, quiet: bool) -> None:
-    if not quiet:
-        typer.echo(text, err=True)
-
-
-def _tell(summary: dict[str, Any], output: Path | None, *, as_json: bool) -> None:
-    if as_json:
-        sys.stdout.write(json.dumps(summary, indent=2) + "\n")
+def _tell(summary: dict[str, Any], course: Course) -> None:
+    if course.as_json:
+        if course.together is None:  # else the other process has printed the run's own summary
+            sys.stdout.write(json.dumps(summary, indent=2) + "\n")
         return
     link = ", ".join(f"{name} {value}" for name, value in summary["link"].items() if value)
     typer.echo(f"{summary['flight_time_s']:.1f} s flown, {summary['phase']}; {link}; {summary['ending']}")
@@ -179,8 +174,14 @@ def _tell(summary: dict[str, Any], output: Path | None, *, as_json: bool) -> Non
             f"real time: {kept['late']} of {kept['steps']} steps more than a period late "
             f"({100 * kept['late_share']:.3f} %), worst {kept['worst_ms']:.1f} ms"
         )
-    if output is not None:
-        typer.echo(f"written to {output}")
+    if summary.get("min_separation_m") is not None:
+        typer.echo(
+            f"by the plant's own track: nearest {summary['min_separation_m']:.1f} m, least margin "
+            f"{summary['min_margin_m']:.1f} m, spheres entered {summary['violations']}"
+        )
+    where = course.output if course.together is None else course.together.directory
+    if where is not None and where.is_dir():
+        typer.echo(f"written to {where}")
 
 
 @contextlib.contextmanager

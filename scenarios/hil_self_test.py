@@ -27,6 +27,7 @@ TARGETS = {"ardupilot": 3000.0, "px4": 2000.0}
 """Steps per second that the loop is to reach on one core, scripted autopilot included."""
 LATE_SHARE = 0.001
 """Of the steps in real time, so many may begin more than a period late."""
+_BOOT = 60.0
 SETTLED = 58.0
 """From here on the scripted flight is where it was told to be [s]."""
 
@@ -202,6 +203,8 @@ def _board(rig: Rig) -> Iterator[SerialPipe]:
     module = [sys.executable, "-m", "offboard.hil.scripted_board", str(outer), rig.airframe.name]
     board = subprocess.Popen([*module, str(rig.declination)], pass_fds=(outer,))
     try:
+        if not pipe.read(_BOOT):
+            raise LinkError(f"the scripted board has not spoken within {_BOOT:g} s")
         yield pipe
     finally:
         board.terminate()

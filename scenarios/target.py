@@ -17,6 +17,7 @@ FILES_OF_A_RUN = frozenset(
         *MARKS_OF_A_RUN,
         *("obstacles.csv", "traffic.csv", "waypoints.csv", "decisions.jsonl", "run.json", "mission.plan"),
         "report.html",
+        *("plant-track.csv", "plant-events.jsonl", "plant-summary.json"),  # of a plant in the loop
     )
 )
 """A previous run with nothing else beside it may be replaced."""

@@ -16,6 +16,7 @@ def main(arguments: list[str]) -> None:
     """Answer until the line is cut."""
     descriptor, airframe, declination = int(arguments[0]), arguments[1], float(arguments[2])
     board = ScriptedPx4(load_airframe(airframe), declination=declination, hardware=True)
+    os.write(descriptor, board.hello())
     while data := os.read(descriptor, 65536):
         answer = board.feed(data)
         while answer:
