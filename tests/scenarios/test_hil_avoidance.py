@@ -1,0 +1,108 @@
+"""Plant and avoidance together: what is started, where the plant begins, what the plant's own track says."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from offboard.hil.plant import NEUTRAL, Phase
+from scenarios.errors import RunDirectoryError, ScenarioError
+from scenarios.hil_avoidance import PREFIX, Together, end
+from scenarios.hil_record import HilRecorder
+from scenarios.hil_setup import HilOptions, Rig
+from scenarios.target import FILES_OF_A_RUN
+from tests.offboard.hil.fakes import AT_REST
+
+SHORT = Path(__file__).parents[1] / "real" / "short.toml"
+
+
+def together(tmp_path, name=SHORT, **options):
+    choices = {"arm": False, "as_json": False} | options
+    return Together.of(str(name), "udpin://127.0.0.1:14999", tmp_path / "run", **choices)
+
+
+def test_the_other_process_is_sidestep_offboard(tmp_path):
+    command = together(tmp_path, arm=True, as_json=True).command
+    assert command[3] == "offboard"
+    for option, value in (("--connect", "udpin://127.0.0.1:14999"), ("--mission", str(SHORT))):
+        assert command[command.index(option) + 1] == value
+    assert {"--arm", "--json"} <= set(command)
+    assert "--arm" not in together(tmp_path).command
+
+
+def test_the_plant_stands_where_and_when_the_scenario_begins(tmp_path):
+    flown = together(tmp_path, "from-left")
+    options = flown.options(HilOptions())
+    assert options.home.latitude_deg == flown.scenario.home.latitude_deg
+    assert options.start == flown.scenario.start_time_utc
+    with Rig(options) as rig:
+        truth, first = rig.simulation.truth, flown.scenario.mission[0]
+        assert rig.simulation.phase is Phase.STANDING
+        assert (truth.north, truth.east) == (first.north, first.east)
+
+
+def test_the_plants_own_track_is_judged(tmp_path):
+    """Past an obstacle of 200 m, 2,500 m ahead and 50 m to the right, 100 m and then 400 m off."""
+    recorder = HilRecorder()
+    for east, begin in ((150.0, 0.0), (-350.0, 1000.0)):
+        for step in range(400):
+            north = 10.0 * step
+            truth = AT_REST._replace(time=begin + step, north=north, east=east, altitude=60.0)
+            recorder(truth, Phase.FLYING, NEUTRAL)
+    found = together(tmp_path).truth(recorder.rows[400:])
+    assert found == {"min_separation_m": 400.0, "min_margin_m": 200.0, "violations": 0}
+    found = together(tmp_path).truth(recorder.rows[:400])
+    assert found == {"min_separation_m": 100.0, "min_margin_m": -100.0, "violations": 1}
+
+
+def test_without_a_track_nothing_is_claimed(tmp_path):
+    assert set(together(tmp_path).truth([]).values()) == {None}
+
+
+def test_the_plants_files_are_files_of_a_run(tmp_path):
+    recorder = HilRecorder()
+    recorder(AT_REST, Phase.STANDING, NEUTRAL)
+    recorder.write(tmp_path, {}, PREFIX)
+    assert {path.name for path in tmp_path.iterdir()} == {
+        "plant-track.csv", "plant-events.jsonl", "plant-summary.json",
+    }  # fmt: skip
+    assert {path.name for path in tmp_path.iterdir()} <= FILES_OF_A_RUN
+
+
+PATIENT = """
+print("up", flush=True)
+try:
+    input()
+except KeyboardInterrupt:
+    raise SystemExit(7)
+"""
+
+
+def test_the_other_process_is_asked_to_write_its_run():
+    child = subprocess.Popen(
+        [sys.executable, "-c", PATIENT], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    )
+    with child:
+        assert child.stdout.readline().strip() == b"up"
+        assert end(child) == 7
+    assert end(child) == 7
+
+
+def test_what_cannot_be_flown_or_written_is_refused_before(tmp_path):
+    with pytest.raises(ScenarioError):
+        together(tmp_path, "no-such-scenario")
+    (tmp_path / "run").mkdir()
+    (tmp_path / "run" / "mine.txt").write_text("mine")
+    with pytest.raises(RunDirectoryError):
+        together(tmp_path)
+
+
+def test_the_heading_is_that_of_the_first_leg(tmp_path):
+    flown = together(tmp_path, "from-left")
+    first, then = flown.scenario.mission[:2]
+    expected = math.atan2(then.east - first.east, then.north - first.north)
+    assert flown.options(HilOptions()).heading == pytest.approx(expected)
