@@ -32,6 +32,11 @@ class Framer(Generic[T]):
         self._accept = accept
         self._left = b""
 
+    @property
+    def waiting(self) -> int:
+        """Bytes of a frame that is not complete yet."""
+        return len(self._left)
+
     def feed(self, data: bytes) -> list[T]:
         """What the frames that are complete now mean, in their order."""
         buffer = self._left + data

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-V1, V2 = 0xFE, 0xFD
-_SIGNED = 0x01
-_SIGNATURE = 13
+from offboard import framing
+from offboard.framing import V2
 
 
 class Frame(NamedTuple):
@@ -73,58 +72,28 @@ class Framer:
     def __init__(self) -> None:
         from pymavlink.dialects.v20 import common  # noqa: PLC0415  (slow import)
 
-        self._extra = {number: each.crc_extra for number, each in common.mavlink_map.items()}
+        self._extra = {number: bytes([each.crc_extra]) for number, each in common.mavlink_map.items()}
         self._crc = common.x25crc
-        self._buffer = b""
-        self.skipped = 0
+        self._cutter = framing.Framer(self._checked)
+        self._bytes = 0
+
+    @property
+    def skipped(self) -> int:
         """Bytes left out so far."""
+        return self._bytes - self._cutter.waiting
 
     def feed(self, data: bytes) -> list[Frame]:
         """The frames that are complete with these bytes."""
-        buffer = self._buffer + data if self._buffer else data
-        frames, at = [], 0
-        while (at := self._next(buffer, at)) < len(buffer):
-            size = _size(buffer, at)
-            if size is None or at + size > len(buffer):
-                break  # more is to come
-            frame = self._checked(buffer[at : at + size])
-            if frame is None:
-                self.skipped += 1
-                at += 1
-            else:
-                frames.append(frame)
-                at += size
-        self._buffer = buffer[at:]
+        frames = self._cutter.feed(data)
+        self._bytes += len(data) - sum(len(frame.data) for frame in frames)
         return frames
-
-    def _next(self, buffer: bytes, at: int) -> int:
-        """Where the next frame may begin."""
-        if at < len(buffer) and buffer[at] in (V1, V2):
-            return at
-        places = [place for place in (buffer.find(V2, at), buffer.find(V1, at)) if place >= 0]
-        found = min(places, default=len(buffer))
-        self.skipped += found - at
-        return found
 
     def _checked(self, data: bytes) -> Frame | None:
         if data[0] == V2:
-            message, system, end = int.from_bytes(data[7:10], "little"), data[5], 12 + data[1] - 2
+            message, system, end = int.from_bytes(data[7:10], "little"), data[5], 10 + data[1]
         else:
-            message, system, end = data[5], data[3], 8 + data[1] - 2
+            message, system, end = data[5], data[3], 6 + data[1]
         extra = self._extra.get(message)
-        if extra is not None:
-            crc = self._crc(data[1:end])
-            crc.accumulate(bytes([extra]))
-            if crc.crc != data[end] | data[end + 1] << 8:
-                return None
+        if extra is not None and self._crc(data[1:end] + extra).crc != data[end] | data[end + 1] << 8:
+            return None
         return Frame(message, system, data)
-
-
-def _size(buffer: bytes, at: int) -> int | None:
-    """Length of the frame that begins here; None if its header is not all there yet."""
-    if len(buffer) - at < 3:
-        return None
-    length = buffer[at + 1]
-    if buffer[at] == V1:
-        return length + 8
-    return length + 12 + (_SIGNATURE if buffer[at + 2] & _SIGNED else 0)

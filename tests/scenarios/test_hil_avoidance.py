@@ -83,9 +83,7 @@ except KeyboardInterrupt:
 
 
 def test_the_other_process_is_asked_to_write_its_run():
-    child = subprocess.Popen(
-        [sys.executable, "-c", PATIENT], stdin=subprocess.PIPE, stdout=subprocess.PIPE
-    )
+    child = subprocess.Popen([sys.executable, "-c", PATIENT], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
     with child:
         assert child.stdout.readline().strip() == b"up"
         assert end(child) == 7
