@@ -72,19 +72,19 @@ class Px4Link:
         self._out = common.MAVLink(None, srcSystem=system, srcComponent=component)
         self._sensor = Writer(HIL_SENSOR, common.MAVLink_hil_sensor_message.crc_extra, self._out)
         self._framer = Framer()
+        self._skipped = 0
         self.broken = 0
         """Frames whose content could not be read."""
 
     @property
     def skipped(self) -> int:
         """Bytes that belonged to no frame."""
-        return self._framer.skipped
+        return self._skipped + self._framer.skipped
 
     def forget(self) -> None:
         """Begin a new connection: what is left of the old one's bytes is thrown away."""
-        skipped = self._framer.skipped
+        self._skipped += self._framer.skipped
         self._framer = Framer()
-        self._framer.skipped = skipped
 
     def hear(self, data: bytes) -> Heard:
         """What PX4 says."""
