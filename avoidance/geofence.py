@@ -145,12 +145,7 @@ class Geofence:
 
     def allows(self, points: Floats) -> Bools:
         """Whether points, shape (n, 2) [m], lie where one may fly, shape (n,)."""
-        inside = [area.holds(points) for area in self.areas if area.include]
-        good = np.any(inside, axis=0) if inside else np.ones(len(points), dtype=np.bool_)
-        for area in self.areas:
-            if not area.include:
-                good &= ~area.holds(points)
-        return np.asarray(good)
+        return _allowed(self.areas, points)
 
     @cached_property
     def discs(self) -> Floats:
@@ -171,7 +166,8 @@ class Geofence:
         pieces, along, length = pieces[length > BESIDE], along[length > BESIDE], length[length > BESIDE]
         beside = BESIDE / length[:, None] * np.column_stack((-along[:, 1], along[:, 0]))
         middle = pieces.mean(axis=1)
-        return np.asarray(pieces[self.allows(middle + beside) != self.allows(middle - beside)])
+        areas = self._walled  # a circle to stay out of would hide the pieces whose middle it covers
+        return np.asarray(pieces[_allowed(areas, middle + beside) != _allowed(areas, middle - beside)])
 
     @cached_property
     def posts(self) -> Floats:
@@ -189,7 +185,7 @@ class Geofence:
             if len(away) == 2:
                 inner = (away / np.hypot(*away.T)[:, None]).sum(axis=0)
                 bend = float(np.hypot(*inner))
-                if bend < 1e-9 or self.allows(place[None] + BESIDE / bend * inner)[0]:
+                if bend < 1e-9 or _allowed(self._walled, place[None] + BESIDE / bend * inner)[0]:
                     continue  # straight on, or a corner that points outwards
             kept.append(place)
         return np.array(kept).reshape(-1, 2)
@@ -201,6 +197,15 @@ class Geofence:
 
 OPEN = Geofence()
 """No geofence: everything is allowed."""
+
+
+def _allowed(areas: Sequence[FenceArea], points: Floats) -> Bools:
+    inside = [area.holds(points) for area in areas if area.include]
+    good = np.any(inside, axis=0) if inside else np.ones(len(points), dtype=np.bool_)
+    for area in areas:
+        if not area.include:
+            good &= ~area.holds(points)
+    return np.asarray(good)
 
 
 def _edges(corners: Floats) -> Floats:

@@ -67,7 +67,7 @@ class Walls:
 
     def discs(self) -> list[Disc]:
         """The discs."""
-        half, spacing = 0.5 * self.width + self.radius, 0.5 * self.radius
+        half, spacing = 0.5 * self.width + self.radius, 0.8 * self.radius
         steps = range(int(self.length / spacing) + 1)
         places = [(spacing * k, side * half) for k in steps for side in (-1, 1) if side != self.open_side]
         if self.closed:

@@ -59,6 +59,11 @@ def test_a_circle_to_stay_out_of_is_a_disc() -> None:
     assert not len(fence.walls)
 
 
+def test_a_circle_to_stay_out_of_hides_no_part_of_an_edge() -> None:
+    fence = Geofence([SQUARE, FenceArea(False, centre=(1000.0, 500.0), radius=200.0)])
+    assert length(fence.walls) == pytest.approx(4000.0)
+
+
 def test_distance_of_segments_from_walls() -> None:
     walls = Walls(np.array([[(0.0, 0.0), (0.0, 100.0)]]), room=10.0)
     starts = np.array([(-5.0, 50.0), (20.0, 0.0), (30.0, 140.0)])
