@@ -14,6 +14,15 @@ from offboard.live.messages import Session
 from offboard.live.telemetry import Fix, Telemetry
 from offboard.live.vehicle_clock import VehicleClock
 
+RATES = {33: 10.0, 30: 5.0, 74: 5.0, 87: 5.0, 42: 2.0, 245: 1.0, 2: 1.0, 242: 0.5, 147: 0.2}
+"""Times a second that each message is asked for; positions, attitude, airspeed, target, mission, ..."""
+
+
+def request_rates(session: Session) -> None:
+    """Ask for what we need, as often as we need it; an autopilot that restarts forgets."""
+    for message, rate in RATES.items():
+        session.request_rate(message, rate)
+
 
 @dataclass(frozen=True, slots=True)
 class Event:

@@ -110,6 +110,8 @@ class LockstepSession(MavsdkSession):
     """
 
     def __init__(self, mavsdk: Mavsdk, system: System, bridge: Bridge) -> None:
+        self.patience = PATIENCE
+        """Wall time that a step's SYSTEM_TIME has to come back [s]."""
         self._bridge = bridge
         self._open: set[int] = set()
         super().__init__(mavsdk, system)
@@ -142,7 +144,9 @@ class LockstepSession(MavsdkSession):
 
     def request_rate(self, message_id: int, rate: float) -> None:
         """Ask for a message so many times a second; SYSTEM_TIME comes with each step."""
-        if message_id != SYSTEM_TIME:
+        if message_id == SYSTEM_TIME:
+            self.keep_step()
+        else:
             super().request_rate(message_id, rate)
 
     def wall(self) -> float:
@@ -164,7 +168,7 @@ class LockstepSession(MavsdkSession):
         found: list[Message | Reply] = []
         self._bridge.step()
         begun = time.monotonic()
-        while time.monotonic() < begun + PATIENCE:
+        while time.monotonic() < begun + self.patience:
             for one in self._taken(0.005):
                 found.append(one)
                 if (

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from offboard.errors import LinkError
 from offboard.frames import MapFrame
-from offboard.live.aboard import Aboard
+from offboard.live.aboard import Aboard, request_rates
 from offboard.live.autopilots import Mode, rules_of
 from offboard.live.limits import EditTimes, read_limits
 from offboard.live.messages import Ask, Message, Session
@@ -16,8 +16,6 @@ from offboard.live.vehicle import LiveVehicle
 from offboard.live.vehicle_clock import VehicleClock
 from offboard.raw_mission import RELATIVE_INT, TAKE_OFF, RawItem, RawMission
 
-RATES = {33: 10.0, 30: 5.0, 74: 5.0, 87: 5.0, 42: 2.0, 245: 1.0, 2: 1.0, 242: 0.5, 147: 0.2}
-"""Times a second that each message is asked for; positions, attitude, airspeed, target, mission, ..."""
 TOO_FAR = 100e3
 """A mission whose home is further away than this from the vehicle is not the vehicle's [m]."""
 RETRY_ARM = 2.0
@@ -61,8 +59,7 @@ def open_vehicle(
     _hear(session, telemetry, timeout, lambda: telemetry.autopilot >= 0, "heartbeat")
     rules = rules_of(telemetry.autopilot)
     if touch:
-        for message, rate in RATES.items():
-            session.request_rate(message, rate)
+        request_rates(session)
     _hear(session, telemetry, timeout, lambda: telemetry.fix is not None, "position: does it have a fix?")
     limits = read_limits(session, rules)
     _hear(session, telemetry, 5.0, lambda: telemetry.home is not None, None)

@@ -9,7 +9,7 @@ from avoidance import Decision, Hold, Performance, Route, Waypoint
 from offboard.edits import route_of
 from offboard.errors import LinkError
 from offboard.link import VehicleState
-from offboard.live.aboard import Aboard
+from offboard.live.aboard import Aboard, request_rates
 from offboard.live.autopilots import Mode
 from offboard.live.editor import Editor, OnBoard
 from offboard.live.messages import Ask, Message, Reply
@@ -364,6 +364,8 @@ class LiveVehicle:
             case Seen.RESTARTED:
                 self.editor.give_up()
                 self._ask_at = self.aboard.session.wall()
+                if self.touch:
+                    request_rates(self.aboard.session)
                 tell("alarm", "the autopilot has restarted; its mission is looked at again")
             case Seen.TAKEN:
                 self.editor.give_up()

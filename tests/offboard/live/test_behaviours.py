@@ -1,0 +1,143 @@
+"""What a live vehicle does when things go wrong: none leaves it on a colliding leg without an alarm."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from offboard.link import EditStatus
+from offboard.sitl.modes import Task
+from tests.offboard.live.kit import SMALL, flying
+
+BOTH = pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
+
+
+def detours(vehicle) -> list:
+    return [entry.waypoint for entry in vehicle.mission.entries if entry.injected]
+
+
+def separation(frames) -> float:
+    obstacle = SMALL.obstacles[0]
+    places = [frame.steps[0].state.ownship for frame in frames]
+    return min(math.hypot(own.north - obstacle.north, own.east - obstacle.east) for own in places)
+
+
+@BOTH
+def test_an_edit_is_flown_and_confirmed(autopilot):
+    with flying(autopilot) as flight:
+        frames = flight.fly(1000.0)
+    assert flight.vehicle.finished
+    assert [record.status for record in flight.vehicle.editor.records] == [EditStatus.CONFIRMED]
+    assert separation(frames) > SMALL.obstacles[0].safety_radius
+    assert flight.said("alarm") == ""
+
+
+@BOTH
+def test_a_human_wins_and_gives_back(autopilot):
+    with flying(autopilot) as flight:
+        flight.fly(20.0)
+        flight.simulation.set_mode(Task.PILOT)
+        flight.fly(40.0)
+        taken = flight.said("alarm")
+        assert "someone else flies" in taken
+        assert "not flown" in taken  # the obstacle ahead: the human is told
+        assert flight.vehicle.editor.records == []
+        flight.simulation.set_mode(Task.MISSION)
+        flight.fly(20.0)
+    assert [record.status for record in flight.vehicle.editor.records] == [EditStatus.CONFIRMED]
+    assert len(detours(flight.vehicle)) == 1
+
+
+@BOTH
+def test_a_lost_link_is_an_alarm_and_the_detour_follows_when_it_is_back(autopilot):
+    with flying(autopilot) as flight:
+        flight.fly(20.0)
+        flight.simulation.silent = True
+        flight.vehicle.aboard.session.patience = 0.002
+        flight.fly(40.0)
+        assert "the link is lost" in flight.said("alarm")
+        assert "not flown, for the link is lost" in flight.said("alarm")
+        flight.simulation.silent = False
+        flight.vehicle.aboard.session.patience = 0.5
+        flight.fly(20.0)
+    assert flight.vehicle.link_losses == 1
+    assert "the link is back" in flight.said("warning")
+    assert len(detours(flight.vehicle)) == 1
+
+
+@BOTH
+def test_an_edit_that_the_link_loses_is_not_lost_silently(autopilot):
+    with flying(autopilot) as flight:
+        flight.fly(37.0)
+        flight.simulation.silent = True
+        flight.vehicle.aboard.session.patience = 0.002
+        flight.fly(20.0)
+        statuses = [record.status for record in flight.vehicle.editor.records]
+    assert EditStatus.CONFIRMED not in statuses
+    assert "the link is lost" in flight.said("alarm")
+
+
+@BOTH
+def test_a_restarted_autopilot_is_an_alarm_and_a_human_must_start_again(autopilot):
+    with flying(autopilot) as flight:
+        flight.fly(30.0)
+        before = flight.vehicle.time
+        flight.simulation.autopilot.restart()
+        flight.fly(5.0)
+        assert "restarted" in flight.said("alarm")
+        assert flight.vehicle.time >= before  # our clock does not go back
+        assert not flight.vehicle.watch.ours
+
+
+@BOTH
+def test_a_mission_changed_by_someone_else_is_taken_over(autopilot):
+    with flying(autopilot) as flight:
+        flight.fly(10.0)
+        theirs = flight.simulation.mission()[:-2]
+        flight.simulation.autopilot.load_mission(theirs[1:] if autopilot == "ardupilot" else theirs)
+        flight.fly(8.0)
+    assert "someone else has changed the mission" in flight.said("warning")
+    assert len(flight.vehicle.mission.uploaded) == len(SMALL.mission) - 1
+
+
+@BOTH
+def test_disarmed_in_flight_nothing_is_commanded(autopilot):
+    with flying(autopilot) as flight:
+        flight.fly(20.0)
+        flight.simulation.force_disarm()
+        flight.fly(4.0)
+    assert "disarmed" in flight.said("alarm")
+    assert not flight.vehicle.watch.ours
+
+
+@BOTH
+def test_a_refused_edit_falls_back_to_the_new_waypoint(autopilot):
+    # the uploaded mission fits, one with a detour does not
+    with flying(autopilot, most_items=4 + (autopilot == "ardupilot")) as flight:
+        flight.fly(60.0)
+        own = flight.vehicle.aboard.ownship()
+    assert flight.vehicle.editor.fallbacks >= 1
+    assert flight.vehicle.editor.records[0].status is EditStatus.REFUSED
+    assert "refused an edit" in flight.said("alarm")
+    assert abs(own.course) > math.radians(2.0)  # no longer towards the obstacle
+
+
+def test_px4_that_drops_our_edit_to_hold_is_retried_once_then_it_is_a_humans():
+    with flying("px4") as flight:
+        flight.fly(20.0)
+        flight.simulation.autopilot.parameters.set("MIS_TKO_LAND_REQ", 2)
+        flight.fly(60.0)
+    assert flight.said("warning").count("our edit made the vehicle go to Hold") == 1
+    assert "someone else flies" in flight.said("alarm") or flight.vehicle.editor.fallbacks >= 1
+
+
+@BOTH
+def test_a_dry_run_touches_nothing(autopilot):
+    with flying(autopilot, touch=False) as flight:
+        simulation = flight.simulation
+        simulation.send_start()
+        before = simulation.mission()
+        flight.fly(60.0)
+        assert simulation.mission() == before
+    assert "(dry run)" in flight.said("info")
