@@ -58,7 +58,7 @@ picture:
 	done; echo "make: no chromium, chromium-browser or google-chrome on the PATH" >&2; exit 1
 
 clean:
-	rm -rf $(VENV) out build dist $(FMU) .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
+	rm -rf $(VENV) out build dist $(FMU) fmu/sidestep_aircraft_fmi2.fmu .mypy_cache .ruff_cache .pytest_cache .hypothesis .import_linter_cache
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(VENV)/.flies: $(SOURCES) $(AGAIN) | $(BIN)/python
