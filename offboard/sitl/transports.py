@@ -13,6 +13,10 @@ from offboard.sitl.autopilot import Autopilot
 
 SILENCE = 30.0
 """A UDP peer that came by itself is forgotten after it has been silent so long [s, wall clock]."""
+AT_ONCE = 500
+"""Most datagrams read in one go: whoever floods us does not stop the simulation."""
+MOST_PEERS = 64
+"""Most peers of a port; more are not listened to."""
 BLOCK = 65536
 """Most bytes read at once."""
 
@@ -71,17 +75,19 @@ class Udp:
         self.port: int = self._socket.getsockname()[1]
 
     def receive(self) -> list[tuple[Address, bytes]]:
-        """All datagrams that have come in."""
+        """The datagrams that have come in."""
         found: list[tuple[Address, bytes]] = []
-        while True:
+        for _ in range(AT_ONCE):
             try:
                 data, address = self._socket.recvfrom(BLOCK)
-            except (BlockingIOError, InterruptedError):
-                return found
-            except OSError:  # Windows tells here that nobody listens where we sent to
+            except ConnectionResetError:  # so Windows tells that nobody listens where we sent to
                 continue
-            self._heard[address] = time.monotonic()
-            found.append((address, data))
+            except OSError:
+                break
+            if address in self._heard or len(self._heard) < MOST_PEERS:
+                self._heard[address] = time.monotonic()
+                found.append((address, data))
+        return found
 
     def send(self, peer: Address, frames: Sequence[bytes]) -> None:
         """One datagram per frame, so that what gets lost is one frame."""

@@ -107,6 +107,17 @@ def test_a_client_that_goes_is_forgotten(tcp):
     assert exchange.heard == 0
 
 
+def test_no_more_peers_are_listened_to_than_can_be_served(udp, monkeypatch):
+    monkeypatch.setattr("offboard.sitl.transports.MOST_PEERS", 2)
+    peers = [Peer(socket.SOCK_DGRAM, udp.port) for _ in range(3)]
+    for peer in peers:
+        peer.send(heartbeat())
+    assert len(udp.receive()) == 2
+    assert len(udp.peers()) == 2
+    for peer in peers:
+        peer.socket.close()
+
+
 @pytest.mark.parametrize("kind", [Udp, TcpServer])
 def test_a_port_that_is_taken_is_named(kind):
     first = kind()
