@@ -17,6 +17,7 @@ from avoidance.ladder import Way, way_round
 from avoidance.parameters import DEFAULT, Parameters
 from avoidance.passages import Gap, way_with_orbits
 from avoidance.replacement import Replacements
+from avoidance.return_to_leg import ReturnToLeg
 from avoidance.route_check import Blocked, first_blocked_leg
 from avoidance.second_thoughts import SecondThoughts, second_words
 from avoidance.tracking import Tracker
@@ -86,6 +87,7 @@ class Agent:
         self._way = way
         self._geofence = geofence
         self._tracker = Tracker(parameters)
+        self._traffic = ReturnToLeg(performance)
         self._escape = Escape(performance)
         self._replacements = Replacements(performance, parameters, geofence)
         self._second_thoughts = SecondThoughts()
@@ -157,6 +159,7 @@ class Agent:
         way = way_with_orbits(gap, self._way, self._rng)
         if way is not None:
             self._avoiding = frozenset(blocked.threat.ids)
+            self._traffic.avoiding(blocked.threat.ids)
             self._holding = False
             self._failures = 0
             return way
@@ -224,7 +227,7 @@ class Agent:
         straight = Route(Waypoint(own.north, own.east, own.altitude), route.waypoints[ahead:])
         blocked = first_blocked_leg(own, straight, known, self._performance, slack=0.0)
         blocked = blocked or first_trap(own, straight, known, self._performance, self._parameters)
-        if ahead == 0 or blocked or first_conflict(own, straight, known, self._performance, resuming=True):
+        if ahead == 0 or blocked or not self._traffic.allows(own, straight, known, self._avoiding):
             return CLEAR
         who = obstacles(tuple(sorted(self._avoiding)))
         self._avoiding = frozenset()

@@ -7,12 +7,16 @@ import math
 import numpy as np
 
 from avoidance.known import Known
-from avoidance.prediction import ground_speeds, leg_approaches
+from avoidance.prediction import Intruders, ground_speeds, leg_approaches
 from avoidance.route_check import Blocked
-from avoidance.types import Floats, Ownship, Performance, Route, Threat
+from avoidance.types import Bools, Floats, Ownship, Performance, Route, Threat
 
 INTRUDER_HORIZON = 900.0
 """Intruders are extrapolated no further than this [s]."""
+HASTE = 60.0
+"""A conflict sooner than this does not wait until more is known [s]."""
+PATIENCE = 20.0
+"""Whoever has flown straight on for a second is expected to do so for this many [s]."""
 WIND_DOUBT = 2.0
 """A wind estimate stronger than the bound by more than this is not believed [m/s]."""
 
@@ -59,6 +63,8 @@ def first_conflict(
     wanted = intruders.radii + intruders.margin
     limit = wanted + doubt if resuming else np.maximum(wanted - 0.5 * intruders.margin - doubt, 0.0)
     close = (separation < limit)[0]
+    if not resuming:
+        close &= ~_can_wait(intruders, (wanted + doubt - separation)[0], times[0], doubt[0])
     if not close.any():
         return None
     leg = int(np.argmax(close.any(axis=1)))
@@ -76,6 +82,20 @@ def first_conflict(
         moving=True,
     )
     return Blocked(threat, leg, np.empty(0, dtype=np.int64))
+
+
+def _can_wait(intruders: Intruders, missing: Floats, times: Floats, doubt: Floats) -> Bools:
+    """True where it pays to know more before a conflict is acted on; all of shape (k - 1, q).
+
+    Notes
+    -----
+    A detour grows with (what is missing)²/(time left), so waiting costs 1/time left a second; the doubt about
+    a velocity falls with time^-1.5, so it saves up to 3 doubt/(age x missing). And whoever has turned a
+    moment ago may turn back: a velocity is trusted for so long, in proportion, as it has been kept.
+    """
+    ages = np.maximum(intruders.ages, 1.0)
+    learning = doubt > np.maximum(intruders.margin, missing * ages / (3.0 * np.maximum(times, 1.0)))
+    return np.asarray((times > HASTE) & (learning | (times > PATIENCE * ages)))
 
 
 def _within_horizon(own: Ownship, route: Route, airspeed: float) -> Floats:

@@ -7,13 +7,13 @@ from itertools import pairwise
 
 import numpy as np
 
+from avoidance.clusters import clusters
 from avoidance.conflicts import wind_estimate
 from avoidance.known import Known
 from avoidance.ladder import Plan
 from avoidance.parameters import Parameters
 from avoidance.problem import WaypointProblem
 from avoidance.route_check import Blocked
-from avoidance.tracking import clusters
 from avoidance.types import (
     Decision,
     Detour,

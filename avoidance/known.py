@@ -10,17 +10,19 @@ import numpy as np
 
 from avoidance.geofence import FENCE, Geofence, Walls
 from avoidance.parameters import Parameters
+from avoidance.picture import Picture
 from avoidance.prediction import Intruders
-from avoidance.tracking import Picture
 from avoidance.types import Bools, Floats, Ints, Ownship, Performance, Route
 
 ALTITUDE_TOLERANCE = 15.0
 """The vehicle keeps its altitude within this [m]."""
 SIGMAS = 3.0
 """Spheres grow by this many standard deviations of their position."""
-CLOSE = 2000.0
-"""An unconfirmed contact nearer than this is believed at once [m]."""
-KNOWN_SPEED = 3.5
+IMMINENT = 300.0
+"""What is seen for the first time nearer to its sphere than this is believed at once [m]."""
+NEAR = 1500.0
+"""What is nearer to its sphere than this, and not known to move, is taken to stand [m]."""
+KNOWN_SPEED = 1.2
 """Whether a track moves is undecided while the standard deviation of its speed exceeds this [m/s]."""
 
 
@@ -118,14 +120,14 @@ def known_obstacles(
     Known
     """
     distance = np.hypot(picture.positions[:, 0] - own.north, picture.positions[:, 1] - own.east)
-    decided = picture.confirmed & (picture.speed_sigma < KNOWN_SPEED)
-    believed = decided | (distance < CLOSE)
+    own_radius = np.where(picture.moving, parameters.moving_radius, parameters.safety_radius)
+    radii = np.where(np.isnan(picture.radii), own_radius, picture.radii)
+    decided = picture.moving | (picture.speed_sigma < KNOWN_SPEED) | (distance < radii + NEAR)
+    believed = (decided & picture.confirmed) | (distance < radii + IMMINENT)
     still = believed & ~picture.moving
     moving = believed & picture.moving & (distance < parameters.reaction_distance)
     if not parameters.predict:
         still, moving = still | moving, np.zeros_like(moving)
-    own_radius = np.where(picture.moving, parameters.moving_radius, parameters.safety_radius)
-    radii = np.where(np.isnan(picture.radii), own_radius, picture.radii)
     doubt = SIGMAS * picture.sigma
     margin = max(parameters.margin, performance.tracking_error) + doubt
     tolerance = np.where(picture.moving, 0.0, parameters.tolerance) + doubt
@@ -147,11 +149,12 @@ def known_obstacles(
 def _traffic(
     picture: Picture, moving: Bools, radii: Floats, own: Ownship, route: Route, parameters: Parameters
 ) -> dict[str, Any]:
-    """What moves, unless it is so high or low that it cannot matter, and the doubt about it."""
+    """What moves, where it is at the time of the vehicle's state, and the doubt about it."""
     flown = [own.altitude, *(waypoint.altitude for waypoint in route.waypoints[:3])]
     return {
         "intruder_ids": picture.ids[moving],
         "intruders": Intruders(
+            ages=picture.ages[moving],
             positions=picture.positions[moving, :2],
             velocities=picture.velocities[moving],
             altitudes=picture.positions[moving, 2],
@@ -161,7 +164,7 @@ def _traffic(
             speed_sigma=picture.speed_sigma[moving],
             band=(min(flown) - ALTITUDE_TOLERANCE, max(flown) + ALTITUDE_TOLERANCE),
             margin=parameters.moving_margin,
-        ),
+        ).after(max(own.time - picture.time, 0.0)),
     }
 
 

@@ -37,6 +37,8 @@ class Intruders:
     """Standard deviation of the position [m], shape (q,)."""
     speed_sigma: Floats = field(default_factory=_none)
     """Standard deviation of the velocity [m/s], shape (q,)."""
+    ages: Floats = field(default_factory=_none)
+    """How long they have flown straight on as far as is known [s], shape (q,)."""
     band: tuple[float, float] = (0.0, 0.0)
     """Lowest and highest altitude that the own vehicle flies at [m]."""
     margin: float = 0.0

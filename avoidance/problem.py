@@ -56,8 +56,6 @@ class WaypointProblem:
     """Moving obstacles."""
     delay: float
     """Time until the vehicle is at the start [s]."""
-    wind: tuple[float, float]
-    """Steady wind, towards north and east [m/s]."""
     performance: Performance
     """What the vehicle can fly."""
     parameters: Parameters
@@ -66,6 +64,8 @@ class WaypointProblem:
     """Edges of the geofence."""
     relaxed: frozenset[str] = frozenset()
     """Constraints given up on this rung of the ladder: any of "g4", "g2", "g1"."""
+    wind: tuple[float, float] = (0.0, 0.0)
+    """Steady wind, towards north and east [m/s]."""
 
     def cost(self, points: Floats) -> Floats:
         """f of Eq. (6) for candidates of shape (n, 2): W_t f1 + W_o f2, shape (n,)."""

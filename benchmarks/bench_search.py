@@ -21,7 +21,8 @@ import numpy as np
 
 from avoidance import Performance
 from avoidance.parameters import DEFAULT
-from avoidance.problem import Intruders, WaypointProblem, search_box, straight_cost
+from avoidance.prediction import Intruders
+from avoidance.problem import WaypointProblem, search_box, straight_cost
 from avoidance.pso import Pso
 from avoidance.search import search_waypoint
 from avoidance.seeds import rule_seeds

@@ -92,7 +92,7 @@ def test_an_intruder_head_on_is_avoided_and_the_leg_resumed() -> None:
     agent = Agent(PERFORMANCE)
     way = route((40_000.0, 0.0))
     decisions = []
-    for second in range(4):
+    for second in range(25):
         table = np.array([[9000.0 - 15.0 * second, 100.0, 200.0]])
         seen = RadarScan(float(second), np.array([1]), table, np.array([np.nan]))
         decision = agent.decide(ownship(15.0 * second, time=second), way, seen)

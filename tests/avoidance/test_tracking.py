@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from avoidance import Contact, RadarScan
+from avoidance.clusters import clusters
 from avoidance.parameters import DEFAULT, PAPER, Parameters
-from avoidance.tracking import Picture, Tracker, clusters
+from avoidance.picture import Picture
+from avoidance.tracking import Tracker
 from tests.avoidance.worlds import ownship, scan
 
 

@@ -60,6 +60,7 @@ def intruders(*rows: tuple[float, float, float, float], margin: float = 100.0) -
         radii=none + 1000.0,
         sigma=none,
         speed_sigma=none,
+        ages=none + 1000.0,
         band=(185.0, 215.0),
         margin=margin,
     )
@@ -86,7 +87,6 @@ def problem(
         avoided=np.arange(count),
         intruders=Intruders() if intruders is None else intruders,
         delay=0.0,
-        wind=(0.0, 0.0),
         performance=PERFORMANCE,
         parameters=parameters,
         relaxed=relaxed,
