@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from avoidance.conflicts import first_conflict
+from avoidance.conflicts import first_conflict, to_be_avoided
 from avoidance.contingency import first_trap, orbit_from_here
 from avoidance.escape import Escape
 from avoidance.geofence import OPEN, Geofence
@@ -155,6 +155,8 @@ class Agent:
         return self._resume(own, route, known) if again is None else again
 
     def _avoid(self, own: Ownship, route: Route, known: Known, blocked: Blocked) -> Decision:
+        if blocked.threat.moving:
+            known = to_be_avoided(own, route, known, self._performance)
         gap = Gap.of(own, route, known, blocked, self._performance, self._parameters)
         way = way_with_orbits(gap, self._way, self._rng)
         if way is not None:

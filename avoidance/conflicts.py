@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from avoidance.known import Known
 from avoidance.prediction import Intruders, ground_speeds, leg_approaches
+from avoidance.right_of_way import gives_way
 from avoidance.route_check import Blocked
 from avoidance.types import Bools, Floats, Ownship, Performance, Route, Threat
 
@@ -17,6 +19,8 @@ HASTE = 60.0
 """A conflict sooner than this does not wait until more is known [s]."""
 PATIENCE = 20.0
 """Whoever has flown straight on for a second is expected to do so for this many [s]."""
+STAND_ON = 10.0
+"""The same for whoever is to give way to the own vehicle: it is given time to do so [s]."""
 WIND_DOUBT = 2.0
 """A wind estimate stronger than the bound by more than this is not believed [m/s]."""
 
@@ -56,15 +60,14 @@ def first_conflict(
     intruders = known.intruders
     if not len(intruders) or not route.waypoints:
         return None
-    points = _within_horizon(own, route, performance.airspeed)
-    speeds = ground_speeds(np.diff(points, axis=1), performance.airspeed, wind_estimate(own, performance))
-    separation, times = leg_approaches(points, speeds, intruders, INTRUDER_HORIZON)
+    separation, times = _approaches(own, route, performance, intruders)
     doubt = intruders.doubt(times)
     wanted = intruders.radii + intruders.margin
     limit = wanted + doubt if resuming else np.maximum(wanted - 0.5 * intruders.margin - doubt, 0.0)
     close = (separation < limit)[0]
     if not resuming:
-        close &= ~_can_wait(intruders, (wanted + doubt - separation)[0], times[0], doubt[0])
+        missing = (wanted + doubt - separation)[0]
+        close &= ~_can_wait(intruders, missing, times[0], doubt[0], _patience(own, intruders))
     if not close.any():
         return None
     leg = int(np.argmax(close.any(axis=1)))
@@ -84,7 +87,35 @@ def first_conflict(
     return Blocked(threat, leg, np.empty(0, dtype=np.int64))
 
 
-def _can_wait(intruders: Intruders, missing: Floats, times: Floats, doubt: Floats) -> Bools:
+def _approaches(
+    own: Ownship, route: Route, performance: Performance, intruders: Intruders
+) -> tuple[Floats, Floats]:
+    """As `leg_approaches`, of the route as far as intruders are extrapolated, shape (1, k - 1, q)."""
+    points = _within_horizon(own, route, performance.airspeed)
+    speeds = ground_speeds(np.diff(points, axis=1), performance.airspeed, wind_estimate(own, performance))
+    return leg_approaches(points, speeds, intruders, INTRUDER_HORIZON)
+
+
+def to_be_avoided(own: Ownship, route: Route, known: Known, performance: Performance) -> Known:
+    """The same without those who are to give way to the own vehicle and still have the time to do so."""
+    intruders = known.intruders
+    if not len(intruders) or not route.waypoints:
+        return known
+    separation, times = _approaches(own, route, performance, intruders)
+    when = np.take_along_axis(times[0], separation[0].argmin(axis=0)[None], axis=0)[0]
+    patience = _patience(own, intruders)
+    waits = (patience < PATIENCE) & (when > HASTE) & (when > patience * np.maximum(intruders.ages, 1.0))
+    if not waits.any():
+        return known
+    return replace(known, intruder_ids=known.intruder_ids[~waits], intruders=intruders.chosen(~waits))
+
+
+def _patience(own: Ownship, intruders: Intruders) -> Floats:
+    yields = gives_way(own.course, (own.north, own.east), intruders)
+    return np.where(yields, PATIENCE, STAND_ON)
+
+
+def _can_wait(intruders: Intruders, missing: Floats, times: Floats, doubt: Floats, patience: Floats) -> Bools:
     """True where it pays to know more before a conflict is acted on; all of shape (k - 1, q).
 
     Notes
@@ -95,7 +126,7 @@ def _can_wait(intruders: Intruders, missing: Floats, times: Floats, doubt: Float
     """
     ages = np.maximum(intruders.ages, 1.0)
     learning = doubt > np.maximum(intruders.margin, missing * ages / (3.0 * np.maximum(times, 1.0)))
-    return np.asarray((times > HASTE) & (learning | (times > PATIENCE * ages)))
+    return np.asarray((times > HASTE) & (learning | (times > patience * ages)))
 
 
 def _within_horizon(own: Ownship, route: Route, airspeed: float) -> Floats:

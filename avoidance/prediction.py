@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
-from avoidance.types import Floats
+from avoidance.types import Bools, Floats
 
 LARGEST_DOUBT = 400.0
 """An uncertain prediction adds no more than this to what is kept [m]."""
@@ -46,6 +46,11 @@ class Intruders:
 
     def __len__(self) -> int:
         return len(self.radii)
+
+    def chosen(self, rows: Bools) -> Intruders:
+        """Some of them."""
+        columns = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("band", "margin")}
+        return replace(self, **{name: values[rows] for name, values in columns.items()})
 
     def after(self, time: float) -> Intruders:
         """The same, `time` seconds later."""
