@@ -21,8 +21,8 @@ WANDER_UP = 0.01
 """The same in height: aircraft hunt about their altitude [m²/s³]."""
 ALTITUDE_SIGMA = 1.0
 """Standard deviation of a measured altitude [m]."""
-MANOEUVRE = 5.0
-"""Acceleration of something that turns [m/s²]."""
+TURNED = 12.0
+"""Standard deviation that a manoeuvre adds to each component of the velocity [m/s]."""
 SURPRISE = 13.8
 """A normalised innovation squared beyond this (0.1 % of a chi-square of 2 degrees) means a manoeuvre."""
 
@@ -149,7 +149,9 @@ def correct(tracks: Tracks, rows: Ints, positions: Floats, noise: Floats, time: 
     surprise = (innovation[:, None] @ inverse @ innovation[:, :, None])[:, 0, 0]
     turning = (surprise > SURPRISE) & tracks.moving[rows]
     if turning.any():
-        covariance[turning] += np.diag([1.0, 1.0, 4.0, 4.0]) * (0.5 * MANOEUVRE) ** 2
+        covariance[turning, :2, :2] += noise[turning]  # it has left the old course some time ago
+        covariance[turning, 2, 2] += TURNED**2
+        covariance[turning, 3, 3] += TURNED**2
         inverse = _inverse(covariance[:, :2, :2] + noise)
         tracks.steady_since[rows[turning]] = time
     gain = covariance[:, :, :2] @ inverse

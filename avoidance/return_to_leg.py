@@ -9,10 +9,11 @@ import numpy as np
 from avoidance.conflicts import first_conflict, wind_estimate
 from avoidance.known import Known
 from avoidance.prediction import ground_speeds, leg_approaches
-from avoidance.types import Ownship, Performance, Route
+from avoidance.types import Ints, Ownship, Performance, Route
 
 PERSISTENT = 5.0
-"""An intruder that has not passed must have been out of the way for this long [s]."""
+"""An intruder that has not passed must have been out of the way for this long, one that has turned must have
+flown straight on for this long [s]."""
 PASSED = 1.0
 """An intruder whose closest approach is sooner than this has passed [s]."""
 
@@ -46,21 +47,21 @@ class ReturnToLeg:
         if first_conflict(own, direct, known, self._performance, resuming=True) is not None:
             self._clear_since = None
             return False
-        ahead = self._not_passed(own, direct, known, avoided)
-        if not ahead:
-            return True
+        rows = np.flatnonzero(np.isin(known.intruder_ids, list(avoided)))
+        if (known.intruders.ages[rows] < PERSISTENT).any():
+            return False
+        ahead = self._not_passed(own, direct, known, rows)
         if ahead & self._regretted:
             return False
+        self._returned |= avoided
+        if not ahead:
+            return True
         if self._clear_since is None:
             self._clear_since = own.time
-        if own.time - self._clear_since < PERSISTENT:
-            return False
-        self._returned |= ahead
-        return True
+        return own.time - self._clear_since >= PERSISTENT
 
-    def _not_passed(self, own: Ownship, direct: Route, known: Known, avoided: frozenset[int]) -> set[int]:
-        """Those of the avoided that would still come nearer on the direct route."""
-        rows = np.flatnonzero(np.isin(known.intruder_ids, list(avoided)))
+    def _not_passed(self, own: Ownship, direct: Route, known: Known, rows: Ints) -> set[int]:
+        """Those of some intruders that would still come nearer on the direct route."""
         if not len(rows):
             return set()
         points = np.array([(own.north, own.east), *((w.north, w.east) for w in direct.waypoints)])[None]

@@ -67,7 +67,7 @@ class Tracker:
         )
         self._last_ids: Ints = np.empty(0, dtype=np.int64)
         self._last_rows: Ints = np.empty(0, dtype=np.int64)
-        self._settled = False  # nothing moves and every track is confirmed
+        self._settled = False  # nothing moves and every track lasts
         self._picture: Picture | None = None
 
     def update(self, scan: RadarScan, own: Ownship) -> Picture:
@@ -197,7 +197,7 @@ class Tracker:
         speed = np.hypot(tracks.state[rows, 2], tracks.state[rows, 3])
         sigma = filters.speed_sigma(tracks)[rows]
         starts = (speed > np.maximum(MOVING_SPEED, MOVING_SIGMAS * sigma)) & (tracks.hits[rows] >= 2)
-        stops = speed < np.maximum(STILL_SPEED, STILL_SIGMAS * sigma)
+        stops = (speed < np.maximum(STILL_SPEED, STILL_SIGMAS * sigma)) & (sigma < MOVING_SPEED)
         before = tracks.moving[rows]
         tracks.moving[rows] = np.where(before, ~stops, starts)
         stopped = rows[before & stops]
@@ -220,7 +220,7 @@ class Tracker:
     def _publish(self, time: float) -> Picture:
         tracks, before, moving = self._tracks, self._picture, self._tracks.moving
         confirmed = tracks.hits >= CONFIRMING_HITS
-        self._settled = not moving.any() and bool(confirmed.all())
+        self._settled = not moving.any() and bool((tracks.hits >= LASTING_HITS).all())
         tracked = np.column_stack([tracks.state[:, :2], tracks.vertical[:, 0]])
         positions = np.where(moving[:, None], tracked, tracks.mean)
         sigma = np.sqrt(np.where(moving, filters.position_variance(tracks), 1.0 / tracks.weight))

@@ -20,13 +20,13 @@ from collections.abc import Callable
 import numpy as np
 
 from avoidance import Performance
+from avoidance.clusters import clusters
 from avoidance.parameters import DEFAULT
 from avoidance.prediction import Intruders
 from avoidance.problem import WaypointProblem, search_box, straight_cost
 from avoidance.pso import Pso
 from avoidance.search import search_waypoint
 from avoidance.seeds import rule_seeds
-from avoidance.tracking import clusters
 from avoidance.types import Floats
 from avoidance.yardsticks import FLOOR, best_waypoint
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from avoidance import Ownship, RadarScan, Route
-from avoidance.conflicts import first_conflict, wind_estimate
+from avoidance.conflicts import first_conflict, to_be_avoided, wind_estimate
 from avoidance.known import Known, known_obstacles
 from avoidance.parameters import DEFAULT
 from avoidance.prediction import Intruders
@@ -66,3 +66,25 @@ def test_wind_changes_where_two_meet() -> None:
     assert wind_estimate(replace(into, heading=2.0), windy) == (0.0, 0.0)
     assert first_conflict(calm, way, with_traffic(calm, way, crossing), windy) is not None
     assert first_conflict(into, way, with_traffic(into, way, crossing), windy) is None
+
+
+def test_what_has_flown_straight_for_a_moment_only_is_watched_first() -> None:
+    own, way = ownship(), route((40_000.0, 0.0))
+    fresh = replace(intruders((9000.0, 0.0, -15.0, 0.0)), ages=np.array([5.0]))
+    assert first_conflict(own, way, with_traffic(own, way, fresh), PERFORMANCE) is None
+    old = replace(fresh, ages=np.array([16.0]))
+    assert first_conflict(own, way, with_traffic(own, way, old), PERFORMANCE) is not None
+    near = replace(intruders((1500.0, 0.0, -15.0, 0.0)), ages=np.array([1.0]))
+    assert first_conflict(own, way, with_traffic(own, way, near), PERFORMANCE) is not None
+
+
+def test_who_must_give_way_is_given_the_time_to() -> None:
+    """From the left, 283 s away: it acts after 15 s, the own vehicle not before 29."""
+    own, way = ownship(), route((40_000.0, 0.0))
+    from_left = replace(intruders((6000.0, -6000.0, 0.0, 15.0)), ages=np.array([25.0]))
+    known = with_traffic(own, way, from_left)
+    assert first_conflict(own, way, known, PERFORMANCE) is None
+    assert not len(to_be_avoided(own, way, known, PERFORMANCE).intruders)
+    patient = with_traffic(own, way, replace(from_left, ages=np.array([45.0])))
+    assert first_conflict(own, way, patient, PERFORMANCE) is not None
+    assert len(to_be_avoided(own, way, patient, PERFORMANCE).intruders) == 1

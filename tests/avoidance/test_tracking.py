@@ -9,10 +9,11 @@ import pytest
 
 from avoidance import Contact, RadarScan
 from avoidance.clusters import clusters
+from avoidance.known import known_obstacles
 from avoidance.parameters import DEFAULT, PAPER, Parameters
 from avoidance.picture import Picture
 from avoidance.tracking import Tracker
-from tests.avoidance.worlds import ownship, scan
+from tests.avoidance.worlds import PERFORMANCE, ownship, route, scan
 
 
 def watch(tracker: Tracker, path: list[tuple[float, float]], ids: list[int] | None = None) -> Picture:
@@ -100,8 +101,8 @@ def test_moving_tracks_coast_and_die_at_last() -> None:
 
 def test_a_still_scan_leaves_the_picture_as_it_is() -> None:
     tracker = Tracker(DEFAULT)
-    pictures = [tracker.update(scan([(8000.0, 0.0)], float(t)), ownship(time=t)) for t in range(5)]
-    assert pictures[3] is pictures[4]
+    pictures = [tracker.update(scan([(8000.0, 0.0)], float(t)), ownship(time=t)) for t in range(9)]
+    assert pictures[7] is pictures[8]
 
 
 def test_noise_does_not_make_obstacles_move() -> None:
@@ -128,3 +129,78 @@ def test_overlapping_spheres_leave_no_gap() -> None:
     joined = clusters(places, np.full(2, 1000.0), 1000.0, join_spheres=True)
     assert apart[0] != apart[1]
     assert joined[0] == joined[1]
+
+
+def test_a_climb_is_shown_when_it_is_significant() -> None:
+    tracker = Tracker(DEFAULT)
+    for second in range(12):
+        contact = Contact(1, 8000.0 - 20.0 * second, 0.0, 900.0 - 3.0 * second)
+        level = Contact(2, 8000.0 - 20.0 * second, 3000.0, 300.0 + 0.3 * second)
+        picture = tracker.update(RadarScan.of(float(second), [contact, level]), ownship(time=second))
+    assert picture.climbs[0] == pytest.approx(-3.0, abs=0.3)
+    assert picture.climbs[1] == 0.0
+
+
+def test_swapped_identities_of_crossing_traffic_do_not_swap_the_tracks() -> None:
+    tracker = Tracker(DEFAULT)
+    for second in range(20):
+        ids = (1, 2) if second < 10 else (2, 1)
+        contacts = [
+            Contact(ids[0], 8000.0 - 15.0 * second, 0.0, 200.0),
+            Contact(ids[1], 8000.0, 200.0 - 15.0 * second, 200.0),
+        ]
+        picture = tracker.update(RadarScan.of(float(second), contacts), ownship(time=second))
+    assert picture.size == 2
+    for row, velocity in ((0, (-15.0, 0.0)), (1, (0.0, -15.0))):
+        assert picture.velocities[row].tolist() == pytest.approx(velocity, abs=0.5)
+    assert picture.ids.tolist() == [2, 1]
+
+
+def test_two_false_returns_at_one_place_are_forgotten_as_well() -> None:
+    tracker = Tracker(DEFAULT)
+    for second in range(12):
+        contacts = [Contact(9, 8000.0, 0.0, 200.0)] if second < 2 else []
+        picture = tracker.update(RadarScan.of(float(second), contacts), ownship(time=second))
+    assert picture.size == 0
+
+
+def test_a_late_scan_is_extrapolated_to_now() -> None:
+    tracker = Tracker(DEFAULT)
+    picture = watch(tracker, [(8000.0 - 15.0 * t, 0.0) for t in range(10)])
+    own = ownship(time=12.0)
+    known = known_obstacles(picture, own, route((40_000.0, 0.0)), PERFORMANCE, DEFAULT)
+    assert known.intruders.positions[0, 0] == pytest.approx(8000.0 - 15.0 * 12.0, abs=1.0)
+
+
+def test_a_slow_intruder_in_noise_is_not_taken_for_an_obstacle_first() -> None:
+    """At 5.5 m/s it takes a while to see that it moves; until then it is neither."""
+    rng = np.random.default_rng(4)
+    parameters = Parameters(range_sigma=50.0, bearing_sigma=math.radians(1.0))
+    tracker, stood = Tracker(parameters), 0
+    for second in range(150):
+        place = np.array([9000.0 - 5.5 * second, 300.0]) + rng.normal(0.0, (50.0, 150.0))
+        contact = Contact(1, float(place[0]), float(place[1]), 200.0)
+        own = ownship(time=second)
+        picture = tracker.update(RadarScan.of(float(second), [contact]), own)
+        stood += len(known_obstacles(picture, own, route((40_000.0, 0.0)), PERFORMANCE, parameters).ids)
+    assert picture.moving[0]
+    assert stood == 0
+
+
+def test_an_unconfirmed_return_is_believed_only_where_it_cannot_wait() -> None:
+    for north, believed in ((1200.0, 1), (2500.0, 0)):
+        picture = Tracker(DEFAULT).update(scan([(north, 0.0)]), ownship())
+        known = known_obstacles(picture, ownship(), route((40_000.0, 0.0)), PERFORMANCE, DEFAULT)
+        assert len(known.ids) == believed
+
+
+def test_what_turns_goes_on_moving() -> None:
+    """The turn makes its velocity doubtful for a moment; that is no reason to think that it stands."""
+    tracker = Tracker(DEFAULT)
+    path = [(8000.0 - 15.0 * t, 0.0) for t in range(30)]
+    path += [(path[-1][0], 15.0 * (t + 1)) for t in range(5)]
+    for second, (north, east) in enumerate(path):
+        contact = Contact(1, north, east, 200.0)
+        picture = tracker.update(RadarScan.of(float(second), [contact]), ownship(time=second))
+        assert picture.moving[0] or second == 0
+    assert picture.ages[0] < 6.0
