@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from avoidance.clusters import clusters
 from avoidance.flown import turn_angle
 from avoidance.geometry import segments_clearance
-from avoidance.tracking import clusters
 from avoidance.types import Floats
 from scenarios.paper.published import published
 
