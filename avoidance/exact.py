@@ -22,9 +22,14 @@ def exact_way(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None
     rng : numpy.random.Generator
         For the ladder.
     """
+    return exact_plan(problem) or way_round(problem, rng)
+
+
+def exact_plan(problem: WaypointProblem) -> Plan | None:
+    """The shortest route of several waypoints, or None where there is none that traffic leaves free."""
     route = exact_route(problem)
     if route is None or problem.separation_shortfall(route) > 0.0:
-        return way_round(problem, rng)
+        return None
     search = Search(
         start=problem.start,
         target=problem.target,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from avoidance.free_space import free_candidates
+from avoidance.free_space import FreeSpace, free_candidates
 from avoidance.geofence import Geofence, Walls
 from avoidance.geometry import Point, distances, point_distances
 from avoidance.tangent_graph import shortest_path
@@ -14,7 +14,7 @@ OUTSIDE = 0.01
 """Candidates lie this much further from walls than they must [m]."""
 MOST_WALLS = 60
 """Walls nearest to the target among which candidates are looked for."""
-MOST_WAYS = 40
+MOST_WAYS = 20
 """Candidates to which a way is looked for."""
 
 
@@ -63,7 +63,10 @@ def nearest_within(
     points = points[np.argsort(point_distances(points, goal), kind="stable")]
     here = np.array([float(reach_from[0]), float(reach_from[1])])
     walls = Walls(fence.walls, room_pass)
-    for point in points[:MOST_WAYS]:
+    space = FreeSpace.of(centres, np.minimum(radii_pass, point_distances(centres, here)))
+    home = space.component(here)
+    connected = [point for point in points if space.component(point) == home]
+    for point in connected[:MOST_WAYS]:
         free = np.minimum(point_distances(centres, here), point_distances(centres, point)) - 0.5
         if (
             shortest_path(here, point, centres, np.maximum(np.minimum(radii_pass, free), 0.0), walls)

@@ -69,6 +69,8 @@ def way_round(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None
         search = search_waypoint(replace(problem, relaxed=relaxed), rng)
         if search.found is not None:
             return _cheapest(problem, Plan(rung, (search.found,), search), rng)
+        if rung is RUNGS[0][0] and not _any_way(problem):
+            return None
     route = _kept_from_intruders(problem, exact_route(problem))
     return None if route is None or search is None else Plan(Rung.ROUTE, route, search)
 
@@ -148,6 +150,14 @@ def exact_route(problem: WaypointProblem) -> tuple[tuple[float, float], ...] | N
             inner = corners[1:-1]
             return tuple((float(point[0]), float(point[1])) for point in inner)
     return None
+
+
+def _any_way(problem: WaypointProblem) -> bool:
+    """Whether a point could get to the target, however sharply it turned: if not, no waypoint helps."""
+    free_start = point_distances(problem.centres, problem.start) - 0.5
+    free_target = point_distances(problem.centres, problem.target) - 0.5
+    radii = np.maximum(np.minimum(np.minimum(problem.keep, free_start), free_target), 0.0)
+    return shortest_path(problem.start, problem.target, problem.centres, radii, problem.walls) is not None
 
 
 def _length(problem: WaypointProblem, waypoints: tuple[tuple[float, float], ...]) -> float:

@@ -10,6 +10,7 @@ import numpy as np
 
 from avoidance.contingency import first_trap, turning_room
 from avoidance.detours import fly_round, search_problem
+from avoidance.exact import exact_plan
 from avoidance.known import Known
 from avoidance.ladder import Plan, Way, widest_way
 from avoidance.parameters import Parameters
@@ -87,7 +88,8 @@ def way_with_orbits(gap: Gap, planner: Way, rng: np.random.Generator) -> Decisio
     Notes
     -----
     The shortest way comes first. If it leads into a narrow passage, so much is kept from what lies on one
-    side of it that an orbit fits in there, then on the other side, then on both. An intruder is evaded even
+    side of it that an orbit fits in there, then on the other side, then on both: work for the exact planner.
+    An intruder is evaded even
     into a narrow passage.
     """
     problem, moving = gap.problem, gap.blocked.threat.moving
@@ -103,7 +105,7 @@ def way_with_orbits(gap: Gap, planner: Way, rng: np.random.Generator) -> Decisio
         corners = np.array([problem.start, *shortest.waypoints, problem.target])
         passage = corners[: max(trap.leg - gap.begin, 0) + 2]
     for room in _rooms(gap, passage):
-        plan = _plan(problem.widened(room), planner, rng)
+        plan = exact_plan(problem.widened(room))
         if plan is not None and gap.trap(plan) is None:
             return gap.way(plan)
     return gap.way(shortest) if shortest is not None and moving else None

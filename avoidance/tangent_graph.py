@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from avoidance.arcs import STRIDE, TAU, admit, checked_discs, covered_arcs, uncovered
+from avoidance.arcs import STRIDE, TAU, Barred, admit, checked_discs, covered_arcs, uncovered
 from avoidance.barriers import Barriers
 from avoidance.geofence import Walls
 from avoidance.geometry import Point
@@ -97,6 +97,7 @@ class _Graph:
         self.members = np.array([-1, -1], dtype=np.int64)  # number in the world of each disc of the graph
         self.centres, self.radii = ends, np.zeros(2)
         self.arcs = uncovered(2)
+        self.barred: Barred = (np.empty(0, dtype=np.int64), np.empty(0), np.empty(0))
         self.tangents = Tangents.none()
 
     def add(self, discs: Ints) -> None:
@@ -107,8 +108,14 @@ class _Graph:
         self.centres = np.concatenate([self.centres, self.world[discs]])
         self.radii = np.concatenate([self.radii, self.sizes[discs]])
         inner = self.radii * (1.0 - TOUCH)
-        barred = self.barriers.arcs(self.centres, self.radii) if len(self.barriers) else None
-        self.arcs = covered_arcs(self.centres, self.radii, self.radii * (1.0 - 2.0 * TOUCH), barred=barred)
+        if len(self.barriers):
+            discs_so_far, begins, ends = self.barred
+            numbers, begin, end = self.barriers.arcs(self.centres[old:], self.radii[old:])
+            begins, ends = np.append(begins, begin), np.append(ends, end)
+            self.barred = np.append(discs_so_far, numbers + old), begins, ends
+        self.arcs = covered_arcs(
+            self.centres, self.radii, self.radii * (1.0 - 2.0 * TOUCH), barred=self.barred
+        )
         fresh, every = np.arange(old, new), np.arange(2, new)
         first, second = np.nonzero(np.arange(new)[:, None] < fresh)
         tangents = self._uncovered(common_tangents(first, fresh[second], self.centres, self.radii))
