@@ -100,7 +100,7 @@ def write_plan(file: Path, content: PlanFile) -> None:
         "rallyPoints": {"version": 2, "points": []},
     }
     try:
-        _write_whole(file, json.dumps(document, indent=2, allow_nan=False) + "\n")
+        write_whole(file, json.dumps(document, indent=2, allow_nan=False) + "\n")
     except (OSError, ValueError) as error:
         raise PlanFileError(file, f"cannot be written: {error}") from error
 
@@ -114,20 +114,20 @@ def read_plan(file: Path) -> PlanFile:
         If the file is missing, is no plan, or holds something that cannot be flown as it says; names the
         item, counted from 0 as in the file.
     """
-    document = _document(file)
-    mission = _mission_object(file, document)
+    document = document_of(file)
+    mission = mission_object(file, document)
     try:
         geofence = fence_of(document.get("geoFence"))
     except ValueError as error:
         raise PlanFileError(file, f"geoFence: {error}") from error
-    latitude_deg, longitude_deg, altitude_m = _numbers(file, mission, "plannedHomePosition", 3)
-    (speed,) = _numbers(file, {"cruiseSpeed": [mission.get("cruiseSpeed", 15.0)]}, "cruiseSpeed", 1)
+    latitude_deg, longitude_deg, altitude_m = numbers(file, mission, "plannedHomePosition", 3)
+    (speed,) = numbers(file, {"cruiseSpeed": [mission.get("cruiseSpeed", 15.0)]}, "cruiseSpeed", 1)
     entries = mission.get("items")
     if not isinstance(entries, list):
         raise PlanFileError(file, "mission.items is missing or no list")
     items: list[MissionItem] = []
     for index, entry in enumerate(entries):
-        command, frame, params = _read_entry(file, index, entry)
+        command, frame, params = read_entry(file, index, entry)
         if command != CHANGE_SPEED:
             items.append(_item(file, index, (command, frame, params), altitude_m))
         elif not 0.0 < params[1] < math.inf:
@@ -186,7 +186,7 @@ def _refuse_unwritable(file: Path, index: int, item: MissionItem) -> None:
         raise PlanFileError(file, f"vehicle_action = {item.vehicle_action.name} cannot be written", index)
 
 
-def _write_whole(file: Path, text: str) -> None:
+def write_whole(file: Path, text: str) -> None:
     """Write a text file so that it appears whole or not at all."""
     handle, name = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")
     try:
@@ -199,7 +199,7 @@ def _write_whole(file: Path, text: str) -> None:
         raise
 
 
-def _document(file: Path) -> Mapping[str, object]:
+def document_of(file: Path) -> Mapping[str, object]:
     """A plan file whose outer form is right."""
     try:
         document = json.loads(file.read_text(encoding="utf-8"))
@@ -215,7 +215,7 @@ def _document(file: Path) -> Mapping[str, object]:
     return document
 
 
-def _mission_object(file: Path, document: Mapping[str, object]) -> Mapping[str, object]:
+def mission_object(file: Path, document: Mapping[str, object]) -> Mapping[str, object]:
     """The mission object of a plan file."""
     mission = document.get("mission")
     if not isinstance(mission, dict) or mission.get("version") != 2:
@@ -223,20 +223,20 @@ def _mission_object(file: Path, document: Mapping[str, object]) -> Mapping[str, 
     return mission
 
 
-def _numbers(
+def numbers(
     file: Path, holder: Mapping[str, object], key: str, count: int, index: int | None = None
 ) -> list[float]:
     """A list of finite numbers; null stands for NaN in an item's parameters."""
     values = holder.get(key)
     if not isinstance(values, list) or len(values) != count:
         raise PlanFileError(file, f"{key} = {values}, must be {count} numbers", index)
-    numbers = [math.nan if value is None and index is not None else value for value in values]
-    if not all(isinstance(number, (int, float)) and not isinstance(number, bool) for number in numbers):
+    found = [math.nan if value is None and index is not None else value for value in values]
+    if not all(isinstance(number, (int, float)) and not isinstance(number, bool) for number in found):
         raise PlanFileError(file, f"{key} = {values}, must be {count} numbers", index)
-    return [float(number) for number in numbers]
+    return [float(number) for number in found]
 
 
-def _read_entry(file: Path, index: int, entry: object) -> tuple[int, int, list[float]]:
+def read_entry(file: Path, index: int, entry: object) -> tuple[int, int, list[float]]:
     """Command, frame and parameters of one entry."""
     if not isinstance(entry, dict):
         raise PlanFileError(file, "is no object", index)
@@ -244,9 +244,9 @@ def _read_entry(file: Path, index: int, entry: object) -> tuple[int, int, list[f
         kind = entry.get("complexItemType", entry.get("type"))
         raise PlanFileError(file, f"type = {kind}: only SimpleItem can be flown", index)
     if "coordinate" in entry:  # files of QGroundControl before 3.3 part the position from the parameters
-        params = _numbers(file, entry, "params", 4, index) + _numbers(file, entry, "coordinate", 3, index)
+        params = numbers(file, entry, "params", 4, index) + numbers(file, entry, "coordinate", 3, index)
     else:
-        params = _numbers(file, entry, "params", 7, index)
+        params = numbers(file, entry, "params", 7, index)
     command, frame = entry.get("command"), entry.get("frame")
     if not isinstance(command, int) or not isinstance(frame, int):
         raise PlanFileError(file, f"command = {command}, frame = {frame}, must be whole numbers", index)

@@ -20,6 +20,7 @@ from scenarios import (
     hil_commands,
     offboard_commands,
     paper_commands,
+    plan_commands,
     sitl_commands,
 )
 from scenarios.command_errors import INTERRUPTED, OK, UNSAFE, expected_errors
@@ -38,6 +39,7 @@ app = typer.Typer(
 )
 app.add_typer(fmu_commands.app)
 app.add_typer(hil_commands.app)
+app.add_typer(plan_commands.app)
 app.command()(compare_commands.compare)
 app.command()(offboard_commands.offboard)
 app.command()(paper_commands.paper)

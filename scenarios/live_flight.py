@@ -16,6 +16,7 @@ from avoidance.parameters import Parameters
 from offboard.link import EditStatus, Radar, VehicleState
 from offboard.live.vehicle import LiveVehicle
 from offboard.pilot import Frame, Pilot, fly
+from scenarios.fence import core_fence
 from scenarios.flown import Flown, FlownVehicle, LoggedDecision, WallTime
 from scenarios.radar import SimulatedRadar
 from scenarios.run import informed
@@ -123,7 +124,9 @@ class LiveFlight:
         self.seen = SeenLog(made, parameters.safety_radius)
         self._radar = TimedRadar(self.seen)
         told = informed(parameters, scenario.radar) if truth else parameters
-        self._agent = WatchedAgent(Core(vehicle.performance, told, generators["planner"]))
+        self._agent = WatchedAgent(
+            Core(vehicle.performance, told, generators["planner"], geofence=core_fence(scenario.geofence))
+        )
         self._clock = TimedClock(self.world)
         self._total = 0.0
         self.ending = "interrupted"

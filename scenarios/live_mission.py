@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from offboard.frames import MapFrame
-from offboard.plan_files import read_plan
+from offboard.mission_files import read_mission_file
 from offboard.raw_mission import RawMission
 from offboard.udp_radar import UdpRadar
 from offboard.wire_radar import WireRadar
@@ -15,6 +15,7 @@ from scenarios.errors import ScenarioError
 from scenarios.hangar import mission_plan
 from scenarios.live_flight import Source
 from scenarios.load import load
+from scenarios.plan_convert import is_mission_file, scenario_of_file
 from scenarios.run import prepare
 from scenarios.scenario import Home, Obstacle, Point, Scenario
 from scenarios.world import World
@@ -25,8 +26,6 @@ if TYPE_CHECKING:
     from offboard.live.vehicle import LiveVehicle
 
 T = TypeVar("T", Obstacle, Point)
-PLAN_SUFFIXES = (".plan", ".waypoints", ".wpl", ".txt", ".mission")
-"""Endings of plan files; everything else is a scenario."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +42,8 @@ class LiveMission:
     scenario: Scenario | None = None
     """Where it was taken from, if from one."""
     seed: int = 0
+    from_file: bool = False
+    """True for a plan file: it says nothing of the wind."""
 
     def named(self, source: SourceChoice) -> Scenario:
         """A scenario with the name under which the run is kept."""
@@ -95,12 +96,14 @@ def mission_of(text: str | None) -> LiveMission:
     """
     if text is None:
         return LiveMission("live")
-    if Path(text).suffix.lower() in PLAN_SUFFIXES:
-        content = read_plan(Path(text))
-        frame = MapFrame(content.home_latitude_deg, content.home_longitude_deg, content.home_altitude_m)
-        first = content.plan.mission_items[0]
-        begin = frame.to_map(first.latitude_deg, first.longitude_deg)
-        return LiveMission(Path(text).stem, RawMission.of_plan(content.plan), frame, begin)
+    if is_mission_file(text):
+        content = read_mission_file(Path(text))
+        scenario = scenario_of_file(content, Path(text).stem)
+        home, start = scenario.home, scenario.mission[0]
+        frame = MapFrame(home.latitude_deg, home.longitude_deg, home.altitude_m)
+        return LiveMission(
+            scenario.name, content.mission(), frame, (start.north, start.east), scenario, from_file=True
+        )
     scenario = _prepared(text)
     home = scenario.home
     frame = MapFrame(home.latitude_deg, home.longitude_deg, home.altitude_m)

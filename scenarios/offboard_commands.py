@@ -78,7 +78,7 @@ def offboard(
         check_target(directory)
         bound = wind_bound
         if bound is None:
-            bound = 3.0 if known is None else known.wind.speed
+            bound = 3.0 if known is None or wanted.from_file else known.wind.speed
         code = _connect_and_fly(
             connect,
             wanted,
