@@ -15,7 +15,7 @@ from offboard.hil.plant import Truth
 REACH = 250.0
 """An anchor serves this far [m]; the linear map errs by 5 mm there at 47° of latitude."""
 _PROBE = 100.0
-_METRES_PER_DEGREE = 111318.84502145034
+METRES_PER_DEGREE = 111318.84502145034
 """ArduPilot's: a sphere of 6,378,100 m (its LOCATION_SCALING_FACTOR)."""
 
 
@@ -64,7 +64,7 @@ class Geodesy:
         north = place.latitude_deg - home.latitude_deg
         east = (place.longitude_deg - home.longitude_deg + 180.0) % 360.0 - 180.0
         shrink = math.cos(math.radians(home.latitude_deg + 0.5 * north))
-        return north * _METRES_PER_DEGREE, east * _METRES_PER_DEGREE * shrink
+        return north * METRES_PER_DEGREE, east * METRES_PER_DEGREE * shrink
 
     def _anchor(self, north: float, east: float) -> None:
         self._north, self._east = north, east
