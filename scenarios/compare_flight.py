@@ -66,7 +66,7 @@ def flight_record(flown: Flown, *, gaps: bool = False) -> Record:
         `summary` (as in summary.json), `safe`, `feasible` (start not walled in), `algorithm_s` (wall time
         of all decisions) and `decision_ms` of each, `searches` (one per single waypoint looked for),
         `changes` (of the route), `mission`, `plan` (final waypoints, [north, east, altitude] in metres),
-        `track` and `traffic` ([north, east] and [time, north, east]), `obstacles` ([id, north, east,
+        `track`, `traffic` (id, radius, track, and the places of both at the closest pass), `obstacles` ([id, north, east,
         radius]).
     """
     judged = score(flown)
@@ -89,7 +89,7 @@ def flight_record(flown: Flown, *, gaps: bool = False) -> Record:
         "mission": [[p.north, p.east, p.altitude] for p in flown.scenario.mission],
         "plan": np.round(np.column_stack((north, east, altitudes)), 3).tolist(),
         "track": thinned(flown.track.positions[:, :2]),
-        "traffic": [_traffic(mover) for mover in flown.traffic],
+        "traffic": [_traffic(mover, flown.track.positions) for mover in flown.traffic],
         "obstacles": [[o.id, o.north, o.east, o.safety_radius] for o in flown.scenario.obstacles],
     }
 
@@ -132,7 +132,19 @@ def _change(entry: LoggedDecision) -> Record:
     }
 
 
-def _traffic(mover: MovingTrack) -> Record:
-    exists = np.flatnonzero(np.isfinite(mover.positions[:, 0]))[::TRAFFIC_STEP]
-    places = np.round(mover.positions[exists, :2], 1)
-    return {"id": mover.id, "radius": mover.radius, "track": places.tolist()}
+def _traffic(mover: MovingTrack, own: Floats) -> Record:
+    """The path of something that moves, and where both were when they were nearest (of all samples)."""
+    there = mover.positions[: len(own)]
+    exists = np.flatnonzero(np.isfinite(there[:, 0]))
+    if not exists.size:
+        return {"id": mover.id, "radius": mover.radius, "track": [], "closest": []}
+    apart = np.linalg.norm(own[exists] - there[exists], axis=1)
+    nearest = exists[int(np.argmin(apart))]
+    closest = np.round([own[nearest, :2], there[nearest, :2]], 1)
+    places = np.round(there[exists[::TRAFFIC_STEP], :2], 1)
+    return {
+        "id": mover.id,
+        "radius": mover.radius,
+        "track": places.tolist(),
+        "closest": closest.tolist(),
+    }

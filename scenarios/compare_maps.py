@@ -70,8 +70,8 @@ def course_map(
     layout["margin"] |= {"b": 110}
     if window is not None:
         x0, x1, y0, y1 = (value / 1e3 for value in window)
-        layout["xaxis"] |= {"range": [x0, x1], "constrain": "domain"}
-        layout["yaxis"] |= {"range": [y0, y1], "scaleanchor": "x", "scaleratio": 1.0, "constrain": "domain"}
+        layout["xaxis"] |= {"range": [x0, x1], "constrain": "range"}
+        layout["yaxis"] |= {"range": [y0, y1], "scaleanchor": "x", "scaleratio": 1.0, "constrain": "range"}
     return {"data": traces, "layout": layout}
 
 
@@ -127,11 +127,24 @@ def _mission(points: Points) -> list[Trace]:
 def _traffic(record: Record, *, show: bool) -> list[Trace]:
     if not show:
         return []
-    return [
-        _line(f"intruder {mover['id']}", mover["track"], "traffic")
-        | {"line": {"color": TRAFFIC, "width": 1.5, "dash": "dot"}}
-        for mover in record["traffic"]
-    ]
+    found = []
+    for mover in record["traffic"]:
+        line = _line(f"intruder {mover['id']}", mover["track"], "traffic")
+        found.append(line | {"line": {"color": TRAFFIC, "width": 1.5, "dash": "dot"}})
+        if not mover["closest"]:
+            continue
+        own, other = mover["closest"]
+        ring = _line("its sphere at the closest pass", _ring(other, mover["radius"]), "traffic-sphere")
+        found.append(ring | {"line": {"color": SPHERE, "width": 1.5}, "fill": "toself", "fillcolor": TINT})
+        join = _line("closest pass", [own, other], "closest")
+        found.append(join | {"line": {"color": TRAFFIC, "width": 1.3}, "showlegend": False})
+    return found
+
+
+def _ring(centre: Sequence[float], radius: float) -> Points:
+    angle = np.linspace(0.0, 2.0 * math.pi, 73)
+    north, east = centre[0] + radius * np.cos(angle), centre[1] + radius * np.sin(angle)
+    return np.column_stack((north, east)).tolist()  # type: ignore[no-any-return]
 
 
 def _put_in(record: Record, colour: str, *, legend: bool) -> list[Trace]:

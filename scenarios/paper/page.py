@@ -37,7 +37,7 @@ def _section(section: Section) -> str:
     parts = [f'<h2 id="{section.name}">{escape(section.title)}</h2>', f"<p>{_prose(section.intro)}</p>"]
     parts += [_grid(grid) for grid in section.grids]
     if section.plots:
-        wide = " wide" if section.wide else ""
+        wide = " wide" if section.wide else " three" if len(section.plots) == 3 else ""
         inner = "".join(plot_html(plot.name, plot.caption) for plot in section.plots)
         parts.append(f'<div class="plots{wide}">{inner}</div>')
     if section.remarks:
