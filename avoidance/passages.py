@@ -66,11 +66,14 @@ class Gap:
         return fly_round(self.route, self.blocked, plan, self.begin, self.end)
 
     def trap(self, plan: Plan) -> Blocked | None:
-        """The first stretch of a plan along which no orbit in free space can be begun for too long."""
+        """The first stretch of a plan along which no orbit in free space can be begun for too long.
+
+        Only up to the target: what lies behind it may still be blocked, and is then another gap.
+        """
         here = Waypoint(self.own.north, self.own.east, self.own.altitude)
-        ahead = Route(here, self.way(plan).route or self.route.waypoints)
-        trap = first_trap(self.own, ahead, self.known, self.performance, self.parameters)
-        return None if trap is None or trap.leg > self.begin + len(plan.waypoints) else trap
+        ahead = self.way(plan).route or self.route.waypoints
+        planned = Route(here, ahead[: self.begin + len(plan.waypoints) + 1])
+        return first_trap(self.own, planned, self.known, self.performance, self.parameters)
 
 
 def way_with_orbits(gap: Gap, planner: Way, rng: np.random.Generator) -> Decision | None:

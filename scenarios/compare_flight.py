@@ -66,8 +66,8 @@ def flight_record(flown: Flown, *, gaps: bool = False) -> Record:
         `summary` (as in summary.json), `safe`, `feasible` (start not walled in), `algorithm_s` (wall time
         of all decisions) and `decision_ms` of each, `searches` (one per single waypoint looked for),
         `changes` (of the route), `mission`, `plan` (final waypoints, [north, east, altitude] in metres),
-        `track`, `traffic` (id, radius, track, and the places of both at the closest pass), `obstacles` ([id, north, east,
-        radius]).
+        `track`, `traffic` (id, radius, track, and the places of both at the closest pass), `obstacles`
+        ([id, north, east, radius]).
     """
     judged = score(flown)
     changes = [entry for entry in flown.decisions if changes_route(entry)]

@@ -154,8 +154,8 @@ def _condition(curves: Sequence[Curve]) -> str:
     if trivial:
         wide = "holds for every step, but only because no run is ever 100 m from the optimum"
     return (
-        f"The best {first} (the algorithm condition). Eq. (31) with γ = 100 m {wide}. With γ = 1 m, the share "
-        f"of steps that come nearer by that much or have arrived is: {shares}."
+        f"The best {first} (the algorithm condition). Eq. (31) with γ = 100 m {wide}. With γ = 1 m, the "
+        f"share of steps that come nearer by that much or have arrived is: {shares}."
     )
 
 

@@ -214,3 +214,10 @@ def test_mistakes_of_the_command(tmp_path):
         done = CliRunner().invoke(app, ["paper", *options, "-o", str(tmp_path)])
         assert done.exit_code == 2
         assert words in done.output
+
+
+def test_a_blocked_leg_behind_the_target_is_no_passage():
+    """Ten obstacles, one beside a waypoint at which the course reverses: the way to it may be flown."""
+    (record,) = fly_all([field_job(QUICK, "10", 3, "pso")], processes=1).values()
+    assert record["safe"]
+    assert "hold" not in [change["decision"] for change in record["changes"]]
