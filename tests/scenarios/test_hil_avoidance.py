@@ -74,8 +74,8 @@ def test_the_plants_files_are_files_of_a_run(tmp_path):
 
 
 PATIENT = """
-print("up", flush=True)
 try:
+    print("up", flush=True)
     input()
 except KeyboardInterrupt:
     raise SystemExit(7)
