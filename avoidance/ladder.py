@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import TypeAlias
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from avoidance.geometry import point_distances
 from avoidance.problem import WaypointProblem
 from avoidance.search import search_waypoint
 from avoidance.tangent_graph import shortest_path
+from avoidance.traffic_route import two_waypoints
 from avoidance.types import Floats, Rung, Search
 
 RUNGS: tuple[tuple[Rung, frozenset[str]], ...] = (
@@ -30,6 +32,9 @@ RUNGS: tuple[tuple[Rung, frozenset[str]], ...] = (
     (Rung.CLOSE, frozenset({"g4", "g2", "g1"})),
 )
 """Single-waypoint rungs and the constraints given up on each."""
+
+Corners: TypeAlias = tuple[tuple[float, float], ...]
+"""Waypoints in order, north and east [m]."""
 
 LARGEST_CORNER = math.radians(40.0)
 """Heading change of a corner of an exact route [rad]."""
@@ -44,7 +49,7 @@ class Plan:
 
     rung: Rung
     """How far down the ladder it was found."""
-    waypoints: tuple[tuple[float, float], ...]
+    waypoints: Corners
     """New waypoints in order, north and east [m]."""
     search: Search
     """The waypoint search made first (with every constraint), or the one that found the waypoint."""
@@ -65,13 +70,16 @@ def way_round(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None
         The planner's randomness.
     """
     search = None
-    for rung, relaxed in RUNGS:
+    for rung, relaxed in RUNGS if len(problem.centres) else RUNGS[:2]:
         search = search_waypoint(replace(problem, relaxed=relaxed), rng)
         if search.found is not None:
             return _cheapest(problem, Plan(rung, (search.found,), search), rng)
         if rung is RUNGS[0][0] and not _any_way(problem):
             return None
     route = _kept_from_intruders(problem, exact_route(problem))
+    if route is None and len(problem.intruders):
+        route, lacking = _through_traffic(problem, rng)
+        route = route if lacking <= 0.0 else None
     return None if route is None or search is None else Plan(Rung.ROUTE, route, search)
 
 
@@ -81,6 +89,10 @@ def _cheapest(problem: WaypointProblem, plan: Plan, rng: np.random.Generator) ->
     length = _length(problem, plan.waypoints)
     if length - math.dist(problem.start, problem.target) < worth:
         return plan
+    if len(problem.intruders):
+        route, lacking = _through_traffic(problem, rng)
+        if route is not None and lacking <= 0.0 and _length(problem, route) < length - worth:
+            return Plan(Rung.ROUTE, route, plan.search)
     route = _kept_from_intruders(problem, exact_route(problem))
     if not route or _length(problem, route) > length - worth:
         return plan
@@ -93,42 +105,63 @@ def _cheapest(problem: WaypointProblem, plan: Plan, rng: np.random.Generator) ->
     return plan
 
 
-def widest_way(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None:
-    """The waypoint that keeps furthest from intruders where d + h cannot be kept from all of them.
+def widest_way(problem: WaypointProblem, rng: np.random.Generator, lacking: float = math.inf) -> Plan | None:
+    """The way that keeps furthest from intruders where d + h cannot be kept from all of them.
 
-    First with the violation radius instead of d + h; then the least violating point that is clear of all
-    that stands still, if it keeps more from them than flying straight on.
+    Parameters
+    ----------
+    problem : WaypointProblem
+        The search with every constraint.
+    rng : numpy.random.Generator
+        The planner's randomness.
+    lacking : float
+        What the route that is being flown lacks [m]: another must lack less by `ROOM_LEFT`.
+
+    Notes
+    -----
+    First with little more than the violation radius instead of d + h; then the least violating way of one or
+    of two waypoints that is clear of all that stands still.
     """
     intruders = problem.intruders
-    close = replace(
-        intruders,
-        margin=min(intruders.margin, ROOM_LEFT),
-        sigma=np.zeros(len(intruders)),
-        speed_sigma=np.zeros(len(intruders)),
-    )
+    surely = np.zeros(len(intruders))
+    close = replace(intruders, margin=min(intruders.margin, ROOM_LEFT), sigma=surely, speed_sigma=surely)
     plan = way_round(replace(problem, intruders=close), rng)
     if plan is not None:
         return plan
     search = search_waypoint(replace(problem, relaxed=RUNGS[-1][1]), rng)
-    point = np.array([search.least_violating])
-    here = search.problem if isinstance(search.problem, WaypointProblem) else problem
-    broken = here.constraints(point)
-    straight = here.separation_shortfall(())
-    if broken["g3"][0] > 0.0 or here.separation_shortfall(point[:1].tolist()) > straight - ROOM_LEFT:
-        return None
-    return Plan(Rung.CLOSE, (search.least_violating,), search)
+    single: Corners = (search.least_violating,)
+    found = [(problem.separation_shortfall(single), single)]
+    route, short = _through_traffic(problem, rng)
+    if route is not None:
+        found.append((short, route))
+    for short, route in sorted(found, key=lambda pair: pair[0]):
+        if short < min(lacking, problem.separation_shortfall(())) - ROOM_LEFT and _clear(problem, route):
+            return Plan(Rung.CLOSE if len(route) == 1 else Rung.ROUTE, route, search)
+    return None
 
 
-def _kept_from_intruders(
-    problem: WaypointProblem, route: tuple[tuple[float, float], ...] | None
-) -> tuple[tuple[float, float], ...] | None:
+def _through_traffic(problem: WaypointProblem, rng: np.random.Generator) -> tuple[Corners | None, float]:
+    """The best way by two waypoints that is clear of what stands still, and what it lacks to d + h [m]."""
+    pairs, _ = two_waypoints(problem, rng)
+    for pair in pairs.tolist():
+        route = ((pair[0][0], pair[0][1]), (pair[1][0], pair[1][1]))
+        if _clear(problem, route):
+            return route, problem.separation_shortfall(route)
+    return None, math.inf
+
+
+def _clear(problem: WaypointProblem, route: Corners) -> bool:
+    return _flyable(problem, np.array([problem.start, *route, problem.target]))
+
+
+def _kept_from_intruders(problem: WaypointProblem, route: Corners | None) -> Corners | None:
     """The route, if it keeps from intruders what is to be kept."""
     if route is None or problem.separation_shortfall(route) > 0.0:
         return None
     return route
 
 
-def exact_route(problem: WaypointProblem) -> tuple[tuple[float, float], ...] | None:
+def exact_route(problem: WaypointProblem) -> Corners | None:
     """Waypoints of the shortest path round everything known that can be flown, or None.
 
     The circles are widened step by step until the flown curve, with its turns, is clear of those that must
@@ -160,7 +193,7 @@ def _any_way(problem: WaypointProblem) -> bool:
     return shortest_path(problem.start, problem.target, problem.centres, radii, problem.walls) is not None
 
 
-def _length(problem: WaypointProblem, waypoints: tuple[tuple[float, float], ...]) -> float:
+def _length(problem: WaypointProblem, waypoints: Corners) -> float:
     corners = (problem.start, *waypoints, problem.target)
     return sum(math.dist(a, b) for a, b in pairwise(corners))
 

@@ -99,7 +99,7 @@ def way_with_orbits(gap: Gap, planner: Way, rng: np.random.Generator) -> Decisio
     passage = np.array([problem.start, problem.target])
     shortest: Plan | None = None
     if not gap.blocked.threat.narrow:
-        shortest = _plan(problem, planner, rng)
+        shortest = _plan(gap, problem, planner, rng)
         if shortest is None:
             return None
         trap = gap.trap(shortest)
@@ -126,10 +126,11 @@ def _rooms(gap: Gap, passage: Floats) -> Iterator[Floats]:
     yield np.full(len(left), 2.0 * wide)
 
 
-def _plan(problem: WaypointProblem, planner: Way, rng: np.random.Generator) -> Plan | None:
+def _plan(gap: Gap, problem: WaypointProblem, planner: Way, rng: np.random.Generator) -> Plan | None:
     plan = planner(problem, rng)
     if plan is None and len(problem.intruders):
-        plan = widest_way(problem, rng)
+        flown = [(w.north, w.east) for w in gap.route.waypoints[gap.begin : gap.end]]
+        plan = widest_way(problem, rng, problem.separation_shortfall(flown))
     return plan
 
 

@@ -145,8 +145,8 @@ class WaypointProblem:
         """How much is missing to what is to be kept from intruders on a route by these waypoints [m]."""
         if not len(self.intruders):
             return 0.0
-        route = self._after_run(np.array([*waypoints, self.target], dtype=np.float64)[None])
-        return float(separation_shortfall(route, self._speeds(route), self.intruders.after(self.delay))[0])
+        route = self.after_run(np.array([*waypoints, self.target], dtype=np.float64)[None])
+        return float(separation_shortfall(route, self.speeds(route), self.intruders.after(self.delay))[0])
 
     def traffic_rank(self, points: Floats) -> Floats:
         """As `rank`, as if nothing stood still: length and separation alone, shape (n,)."""
@@ -156,7 +156,7 @@ class WaypointProblem:
 
     def _separated(self, points: Floats) -> Floats:
         route = self._by(points)
-        return separation_shortfall(route, self._speeds(route), self.intruders.after(self.delay))
+        return separation_shortfall(route, self.speeds(route), self.intruders.after(self.delay))
 
     def _manners(self, points: Floats) -> Floats | float:
         """Length that passing on the wrong side is counted as [m], shape (n,)."""
@@ -165,7 +165,7 @@ class WaypointProblem:
         if yielding is None or not yielding.any():
             return 0.0
         route = self._by(points)
-        wrong = wrong_side(route, self._speeds(route), intruders.after(self.delay), yielding)
+        wrong = wrong_side(route, self.speeds(route), intruders.after(self.delay), yielding)
         return self.parameters.wrong_side * wrong
 
     @property
@@ -178,9 +178,9 @@ class WaypointProblem:
         """The routes by each of some points to the target, shape (n, k, 2)."""
         onward = np.empty((len(points), 2, 2))
         onward[:, 0], onward[:, 1] = points, self.target
-        return self._after_run(onward)
+        return self.after_run(onward)
 
-    def _after_run(self, onward: Floats) -> Floats:
+    def after_run(self, onward: Floats) -> Floats:
         """What is flown first: straight on until the turn has begun; then `onward`, shape (n, k, 2)."""
         first = [self.start]
         if self.course is not None:
@@ -191,7 +191,8 @@ class WaypointProblem:
         route[:, : len(first)], route[:, len(first) :] = first, onward
         return route
 
-    def _speeds(self, route: Floats) -> Floats | float:
+    def speeds(self, route: Floats) -> Floats | float:
+        """Ground speed on the legs of routes of shape (n, k, 2), shape (n, k - 1) [m/s]."""
         return ground_speeds(np.diff(route, axis=1), self.performance.airspeed, self.wind)
 
 
