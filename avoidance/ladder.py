@@ -42,6 +42,10 @@ LARGEST_CORNER = math.radians(40.0)
 ROOM_LEFT = 50.0
 """A separation from an intruder is worth a change of route if it is better by this [m]."""
 
+LONG_WAY = 4.0
+"""Round several intruders, two waypoints are tried as well where one costs more than so many times what a
+relaxation must be worth."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
@@ -89,7 +93,7 @@ def _cheapest(problem: WaypointProblem, plan: Plan, rng: np.random.Generator) ->
     length = _length(problem, plan.waypoints)
     if length - math.dist(problem.start, problem.target) < worth:
         return plan
-    if len(problem.intruders):
+    if len(problem.intruders) > 1 and length - math.dist(problem.start, problem.target) > LONG_WAY * worth:
         route, lacking = _through_traffic(problem, rng)
         if route is not None and lacking <= 0.0 and _length(problem, route) < length - worth:
             return Plan(Rung.ROUTE, route, plan.search)

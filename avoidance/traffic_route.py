@@ -18,8 +18,8 @@ SECOND_ANGLES = np.radians(np.arange(-90.0, 91.0, 10.0))
 """Bearings of the second waypoint, seen from the start as well [rad]."""
 SECOND_RANGES = np.array([1000.0, 2500.0, 5000.0, 9000.0, 14_000.0])
 """Its distances [m]."""
-BEST_FIRST = 60
-"""First waypoints that are combined with all second ones."""
+MOST = 100_000
+"""Pairs of waypoints times intruders that are looked at; if there are more, only every so many-th pair."""
 REFINED = 4
 """Pairs that are refined ..."""
 ROUNDS, TRIES = 8, 24
@@ -47,12 +47,10 @@ def two_waypoints(problem: WaypointProblem, rng: np.random.Generator) -> tuple[F
     """
     first = _polar(problem, FIRST_ANGLES, FIRST_RANGES)
     lacking = _shortfall(problem, first[:, None])
-    first = first[np.argsort(lacking, kind="stable")[:BEST_FIRST]]
+    first = first[lacking <= lacking.min()]  # what is lost on the way to it is lost
     second = _polar(problem, SECOND_ANGLES, SECOND_RANGES)
-    pairs = np.stack(
-        [np.repeat(first, len(second), axis=0), np.tile(second, (len(first), 1))],
-        axis=1,
-    )
+    pairs = np.stack([np.repeat(first, len(second), axis=0), np.tile(second, (len(first), 1))], axis=1)
+    pairs = pairs[:: 1 + len(pairs) * len(problem.intruders) // MOST]
     rank = _rank(problem, pairs)
     best = np.argsort(rank, kind="stable")[:REFINED]
     pairs, rank = pairs[best], rank[best]

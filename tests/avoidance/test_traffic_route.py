@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 
@@ -14,8 +15,8 @@ from tests.avoidance.worlds import intruders, problem
 
 TARGET = (40_000.0, 0.0)
 GATES = intruders(  # two lines abreast that close the way ahead, the second where the first is open
-    *((9000.0, float(east), -15.0, 0.0) for east in range(-9000, 1, 1000)),
-    *((20_000.0, float(east), -15.0, 0.0) for east in range(-1000, 9001, 1000)),
+    *((9000.0, float(east), -15.0, 0.0) for east in range(-30_000, 1, 1000)),
+    *((28_000.0, float(east), -15.0, 0.0) for east in range(-1000, 30_001, 1000)),
 )
 
 
@@ -39,7 +40,7 @@ def test_they_are_refined_to_the_shortest_way() -> None:
     pairs, lacking = two_waypoints(question, np.random.default_rng(0))
     route = [question.start, *pairs[0].tolist(), question.target]
     assert lacking == 0.0
-    assert sum(math.dist(a, b) for a, b in zip(route, route[1:], strict=False)) < 40_000.0 + 250.0
+    assert sum(math.dist(a, b) for a, b in pairwise(route)) < 40_000.0 + 250.0
 
 
 def test_a_route_is_left_for_a_wider_one_only_where_that_is_much_wider() -> None:
