@@ -183,7 +183,7 @@ def exact_route(problem: WaypointProblem) -> Corners | None:
         if path is None:
             return None
         corners = path.polyline(LARGEST_CORNER)
-        if _flyable(problem, corners):
+        if flyable(problem, corners):
             inner = corners[1:-1]
             return tuple((float(point[0]), float(point[1])) for point in inner)
     return None
@@ -202,7 +202,11 @@ def _length(problem: WaypointProblem, waypoints: Corners) -> float:
     return sum(math.dist(a, b) for a, b in pairwise(corners))
 
 
-def _flyable(problem: WaypointProblem, corners: Floats) -> bool:
+def flyable(problem: WaypointProblem, corners: Floats) -> bool:
+    """True if a route, flown with its turns, keeps clear of what stands still and of the geofence.
+
+    `corners`, shape (k, 2) [m], begin at the start and end at the target.
+    """
     if problem.before is not None:
         corners = np.concatenate([np.array([problem.before]), corners])
     starts, ends, extra = flown_segments(corners[None], problem.course, problem.performance)

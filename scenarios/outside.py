@@ -13,7 +13,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from avoidance.ladder import Plan, way_round
+from avoidance.ladder import Plan, flyable, way_round
 from avoidance.problem import INFEASIBLE, WaypointProblem, search_box
 from avoidance.seeds import rule_seeds, sphere_seeds
 from avoidance.types import Floats, Rung, Search
@@ -112,7 +112,7 @@ def outside_way(name: str) -> Callable[[WaypointProblem, np.random.Generator], P
 
     def way(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None:
         points, evaluations = solve(problem, rng)
-        if points is None or problem.separation_shortfall(points) > 0.0:
+        if points is None or not _may_be_flown(problem, points):
             return way_round(problem, rng)
         single = len(points) == 1 and problem.violation(np.array(points))[0] <= 0.0
         search = Search(
@@ -129,6 +129,11 @@ def outside_way(name: str) -> Callable[[WaypointProblem, np.random.Generator], P
         return Plan(Rung.WAYPOINT if single else Rung.ROUTE, points, search)
 
     return way
+
+
+def _may_be_flown(problem: WaypointProblem, points: Points) -> bool:
+    corners = np.array([problem.start, *points, problem.target])
+    return flyable(problem, corners) and problem.separation_shortfall(points) <= 0.0
 
 
 def _population(problem: WaypointProblem, rng: np.random.Generator) -> Floats:

@@ -16,6 +16,21 @@ from scenarios.planners import PLANNERS
 from scenarios.statistics import wilson
 
 WORDS = {"40+hill": "40 and a hill", "40+moving": "40 and 2 moving"}
+HEADS = (
+    Head("obstacles", left=True),
+    Head("flying time", "paper [min]"),
+    Head("flying time", "ours [min]", ours=True),
+    Head("algorithm", "paper [s]"),
+    Head("algorithm", "ours [s]", ours=True),
+    Head("length", "paper [m]"),
+    Head("plan length", "ours [m]", ours=True),
+    Head("path flown", "ours [m]", ours=True),
+    Head("÷ shortest", "path flown, of the shortest safe way", ours=True),
+    Head("added", "paper: over its own empty mission [m]"),
+    Head("added", "ours: plan, the same [m]", ours=True),
+    Head("flown safely", "ours, where a way exists", ours=True),
+    Head("share", "ours, 95 % Wilson interval", ours=True),
+)
 CLEAR = "0"
 """The row without obstacles: no world differs, so one run says all."""
 
@@ -41,21 +56,6 @@ def section(options: Options, records: Mapping[str, Record]) -> Section:
         names = [field_job(options, row.obstacles, i, options.own).name for i in range(runs_of(row, options))]
         rows.append((row, _figures([records[name] for name in names])))
     clear = rows[0][1]["plan_length_m"]
-    heads = (
-        Head("obstacles", left=True),
-        Head("flying time", "paper [min]"),
-        Head("flying time", "ours [min]", ours=True),
-        Head("algorithm", "paper [s]"),
-        Head("algorithm", "ours [s]", ours=True),
-        Head("length", "paper [m]"),
-        Head("plan length", "ours [m]", ours=True),
-        Head("path flown", "ours [m]", ours=True),
-        Head("÷ shortest", "path flown, of the shortest safe way", ours=True),
-        Head("added", "paper: over its own empty mission [m]"),
-        Head("added", "ours: plan, the same [m]", ours=True),
-        Head("flown safely", "ours, where a way exists", ours=True),
-        Head("share", "ours, 95 % Wilson interval", ours=True),
-    )
     empty = published().table3[0].path_length_m
     lines = tuple(
         (
@@ -84,7 +84,7 @@ def section(options: Options, records: Mapping[str, Record]) -> Section:
         reach=f"{options.parameters.acceptance_radius:,.0f} m",
     )
     data = [{"obstacles": row.obstacles, "paper": _printed(row), "ours": ours} for row, ours in rows]
-    return Section("table3", text.title, text.intro, (Grid(heads, lines),), (), text.remarks, data)
+    return Section("table3", text.title, text.intro, (Grid(HEADS, lines),), (), text.remarks, data)
 
 
 def _printed(row: FieldRow) -> dict[str, float | None]:
