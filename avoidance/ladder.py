@@ -155,7 +155,7 @@ def _through_traffic(problem: WaypointProblem, rng: np.random.Generator) -> tupl
 
 
 def _clear(problem: WaypointProblem, route: Corners) -> bool:
-    return _flyable(problem, np.array([problem.start, *route, problem.target]))
+    return flyable(problem, np.array([problem.start, *route, problem.target]))
 
 
 def _kept_from_intruders(problem: WaypointProblem, route: Corners | None) -> Corners | None:
