@@ -13,7 +13,11 @@ class LinkError(OffboardError):
     """The vehicle cannot do, or did not do, what it was asked."""
 
 
-class PlanFileError(OffboardError):
+class InputError(OffboardError):
+    """What a user has given cannot be used: a file, a key, an address."""
+
+
+class PlanFileError(InputError):
     """A plan file cannot be read or written.
 
     Parameters

@@ -20,7 +20,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-from offboard.errors import LinkError
+from offboard.errors import InputError
 from offboard.framing import SIGNATURE_LENGTH, SIGNED, V2, Framer
 
 KEY_LENGTH = 32
@@ -42,15 +42,15 @@ def load_key(file: Path) -> bytes:
 
     Raises
     ------
-    LinkError
+    InputError
         If the file cannot be read, or is empty.
     """
     try:
         text = file.read_text(encoding="utf-8").strip()
     except (OSError, UnicodeDecodeError) as error:
-        raise LinkError(f"{file}: the signing key cannot be read: {error}") from error
+        raise InputError(f"{file}: the signing key cannot be read: {error}") from error
     if not text:
-        raise LinkError(f"{file}: the signing key is empty; put 64 hexadecimal digits or a passphrase there")
+        raise InputError(f"{file}: the signing key is empty; put 64 hexadecimal digits or a passphrase there")
     if re.fullmatch(r"[0-9a-fA-F]{64}", text):
         return bytes.fromhex(text)
     return hashlib.sha256(text.encode()).digest()

@@ -14,12 +14,12 @@ OK, UNSAFE, BAD_INPUT, FAILED, INTERRUPTED = 0, 1, 2, 3, 130
 def expected_errors(interrupted: str = "nothing was written") -> Iterator[None]:
     """Expected errors become one message on stderr and an exit code."""
     from fmu.errors import FmuError  # noqa: PLC0415
-    from offboard.errors import OffboardError  # noqa: PLC0415
+    from offboard.errors import InputError, OffboardError  # noqa: PLC0415
     from scenarios.errors import RunDirectoryError, ScenarioError  # noqa: PLC0415
 
     try:
         yield
-    except (ScenarioError, RunDirectoryError) as error:
+    except (ScenarioError, RunDirectoryError, InputError) as error:
         typer.echo(f"sidestep: {error}", err=True)
         raise typer.Exit(BAD_INPUT) from error
     except (FmuError, OffboardError) as error:

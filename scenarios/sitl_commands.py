@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from scenarios.sitl_world import SitlWorld
 
 MOST_VEHICLES = 20
+HIGHEST_PORT = 65535
 GROUND_SCENARIO = "clear"
 """Gives home where no scenario is named."""
 
@@ -89,6 +90,7 @@ def sitl(
             known = ", ".join(FLAVOURS)
             raise ScenarioError("--autopilot", f"{autopilot!r} is unknown; known: {known}")
         faults = _faults(loss, duplicate, delay, outage)
+        address = _address(host, port, vehicles)
         on_ground = scenario is None
         chosen = load(scenario or GROUND_SCENARIO)
         chosen = run.prepare(chosen, chosen.seed if seed is None else seed)
@@ -109,7 +111,7 @@ def sitl(
         stack.enter_context(world)
         exchanges, ports = [], []
         for number, each in enumerate(world.autopilots.values()):
-            exchange, its_ports = connect(each, number, port, host, faults)
+            exchange, its_ports = connect(each, number, port, address, faults)
             stack.callback(exchange.close)
             exchanges.append(exchange)
             ports.append(its_ports)
@@ -131,6 +133,23 @@ def _run(
         except KeyboardInterrupt:
             return INTERRUPTED
     return OK
+
+
+def _address(host: str, port: int, vehicles: int) -> str:
+    """The numbers of a host's address, looked up once; every vehicle's port must be one."""
+    import socket  # noqa: PLC0415
+
+    from scenarios.errors import ScenarioError  # noqa: PLC0415
+
+    if port + vehicles - 1 > HIGHEST_PORT:
+        message = (
+            f"{port}: {vehicles} vehicles need ports up to {port + vehicles - 1}, the last is {HIGHEST_PORT}"
+        )
+        raise ScenarioError("--port", message)
+    try:
+        return socket.gethostbyname(host)
+    except (OSError, UnicodeError) as error:
+        raise ScenarioError("--host", f"{host!r} is no host that is known (IPv4): {error}") from error
 
 
 def _settings(texts: Sequence[str]) -> dict[str, float]:

@@ -104,7 +104,6 @@ def serve(
         True ends it.
     """
     step = min(STEP, max(FINEST, LATEST * speed))
-    sockets = [each for exchange in exchanges for each in exchange.sockets()]
     begun = shown_at = time.perf_counter()
     done = shown = lost = 0.0
     while not stopped():
@@ -114,9 +113,9 @@ def serve(
         if now - shown_at >= BACKLOG:
             show(done, (done - shown) / (now - shown_at))
             shown_at, shown = now, done
-            sockets = [each for exchange in exchanges for each in exchange.sockets()]
         late = (now - begun) - (done / speed + lost)
         if late < 0.0:
+            sockets = [each for exchange in exchanges for each in exchange.sockets()]  # clients come and go
             select.select(sockets, [], [], min(-late, 0.05))
             continue
         if late > BACKLOG:

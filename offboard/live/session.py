@@ -9,7 +9,7 @@ from collections.abc import Callable
 from itertools import count
 from typing import TYPE_CHECKING, Any
 
-from offboard.errors import LinkError
+from offboard.errors import InputError, LinkError
 from offboard.live.messages import Ask, Message, Reply
 from offboard.raw_mission import RawItem
 
@@ -219,14 +219,17 @@ def connect(url: str, timeout: float = 30.0) -> MavsdkSession:
 
     Raises
     ------
+    InputError
+        If the URL is none.
     LinkError
-        If the URL cannot be opened or nothing is heard; says what to look at.
+        If it cannot be opened or nothing is heard; says what to look at.
     """
     mavsdk = quiet_mavsdk()
     result = mavsdk.add_any_connection(url)
     if result.name != "SUCCESS":
         mavsdk.destroy()
-        raise LinkError(
+        kind = InputError if result.name == "CONNECTION_URL_INVALID" else LinkError
+        raise kind(
             f"{url} cannot be opened ({result.name}); "
             "such as udpin://0.0.0.0:14540, tcpout://127.0.0.1:5760, serial:///dev/ttyUSB0:57600"
         )

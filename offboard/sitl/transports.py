@@ -17,6 +17,8 @@ AT_ONCE = 500
 """Most datagrams read in one go: whoever floods us does not stop the simulation."""
 MOST_PEERS = 64
 """Most peers of a port; more are not listened to."""
+MOST_CLIENTS = 40
+"""Most clients of a TCP port: twenty vehicles stay below what `select` can wait on."""
 BLOCK = 65536
 """Most bytes read at once."""
 
@@ -142,8 +144,8 @@ class TcpServer:
 
     def receive(self) -> list[tuple[Address, bytes]]:
         """What the clients have sent; new ones are let in, gone ones forgotten."""
-        with contextlib.suppress(BlockingIOError, InterruptedError):
-            while True:
+        with contextlib.suppress(OSError):  # none left, or one that has given up meanwhile
+            while len(self._clients) < MOST_CLIENTS:
                 client, address = self._socket.accept()
                 client.setblocking(False)
                 client.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)

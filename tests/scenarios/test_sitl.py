@@ -18,7 +18,7 @@ from avoidance.parameters import PRESETS
 from offboard.sitl.aircraft import Phase
 from offboard.sitl.autopilot import FLAVOURS
 from offboard.sitl.dialect import Codec, mavlink
-from offboard.sitl.transports import Exchange, Udp
+from offboard.sitl.transports import Exchange, TcpServer, Udp
 from scenarios.cli import app
 from scenarios.errors import ScenarioError
 from scenarios.load import load
@@ -217,6 +217,26 @@ def test_a_simulation_that_is_too_slow_gives_time_up():
     assert pilots(world)[0].aircraft.clock == pytest.approx(30.0, abs=0.2)  # one step a turn
 
 
+def test_a_client_that_goes_does_not_end_the_simulation(monkeypatch):
+    server = TcpServer()
+    clients = [socket.create_connection(("127.0.0.1", server.port))]
+    turns, waits = iter(range(1000)), []
+
+    def wait(sockets, *_):
+        waits.append([each.fileno() for each in sockets])
+        if len(waits) == 2:
+            clients.pop().close()
+
+    monkeypatch.setattr("scenarios.sitl_run.select.select", wait)
+    with world_of(small()) as world:
+        exchange = Exchange(pilots(world)[0], [server])
+        serve(world, [exchange], 0.01, lambda *_: None, lambda: next(turns) == 10)
+        exchange.close()
+    assert [len(each) for each in waits[:2]] == [2, 2]
+    assert len(waits[-1]) == 1
+    assert min(min(each) for each in waits) >= 0
+
+
 # The command
 
 
@@ -230,6 +250,8 @@ def test_a_simulation_that_is_too_slow_gives_time_up():
         (["--outage", "soon"], "two numbers with a comma"),
         (["no-such-scenario"], "no-such-scenario"),
         (["circle", "--vehicles", "9"], "circle has 8"),
+        (["--port", "65535", "--vehicles", "2"], "need ports up to 65536"),
+        (["--host", "no such host"], "'no such host' is no host"),
     ],
 )
 def test_bad_input_is_one_message(arguments, words):
@@ -241,7 +263,7 @@ def test_bad_input_is_one_message(arguments, words):
 
 def test_a_key_that_cannot_be_read_is_said_so(tmp_path):
     result = CliRunner().invoke(app, ["sitl", "--signing-key", str(tmp_path / "none")])
-    assert result.exit_code == 3
+    assert result.exit_code == 2
     assert "signing key cannot be read" in result.output
 
 

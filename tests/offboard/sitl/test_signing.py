@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from offboard.errors import LinkError
+from offboard.errors import InputError
 from offboard.signing import EPOCH, SigningPipe, load_key
 from offboard.sitl.dialect import Codec, mavlink
 from tests.offboard.sitl.station import autopilot
@@ -117,7 +117,7 @@ def test_keys_from_files(tmp_path):
     assert load_key(digits) == KEY
     assert load_key(phrase) == hashlib.sha256(b"correct horse").digest()
     for file in (empty, tmp_path / "missing"):
-        with pytest.raises(LinkError, match=file.name):
+        with pytest.raises(InputError, match=file.name):
             load_key(file)
 
 
