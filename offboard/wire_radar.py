@@ -155,7 +155,11 @@ class WireRadar:
         attitude, fix, time = _then(message, telemetry, fix)
         if not isinstance(distances, list) or attitude is None:
             return
-        step = message.number("increment_f") or message.number("increment")
+        step = message.number("increment_f")
+        if not step > 0.0:
+            step = message.number("increment")
+        if not step > 0.0:
+            return
         offset = message.number("angle_offset")
         nose = attitude.yaw if message.whole("frame") in BODY_FRD + LOCAL_FRD else 0.0
         for number, centimetres in enumerate(distances):

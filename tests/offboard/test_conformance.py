@@ -21,6 +21,7 @@ from avoidance.parameters import DEFAULT
 from offboard.link import EditStatus, Vehicle
 from offboard.live.session import connect
 from offboard.live.starting import arm, fly_mission, open_vehicle
+from offboard.live.waiting import WaitingClock
 from offboard.mission import MissionItem
 from offboard.pilot import Pilot, fly
 from offboard.raw_mission import RawMission
@@ -33,7 +34,7 @@ from scenarios.scenario import OWN, streams
 from scenarios.sitl_run import serve
 from scenarios.sitl_world import SitlWorld
 from scenarios.world import World
-from tests.offboard.live.kit import SMALL, VehicleTime, flying
+from tests.offboard.live.kit import SMALL, flying
 
 SECONDS = 3.0
 METRES = 50.0
@@ -65,7 +66,7 @@ def in_process(_: str) -> Iterator[Flight]:
 def in_lockstep(autopilot: str) -> Iterator[Flight]:
     with flying(autopilot) as flight:
         pilot = Pilot(flight.vehicle, flight.radar, flight.agent)
-        yield Flight(flight.vehicle, pilot, VehicleTime(flight.vehicle))
+        yield Flight(flight.vehicle, pilot, WaitingClock(flight.vehicle))
 
 
 @contextlib.contextmanager
@@ -87,7 +88,7 @@ def over_udp(autopilot: str) -> Iterator[Flight]:
                 fly_mission(vehicle)
                 vehicle.aboard.clock.restart()
                 shown = World(SMALL.obstacles, {OWN: Here(vehicle)})
-                yield Flight(vehicle, pilot_of(vehicle, shown), VehicleTimeIn(vehicle, shown))
+                yield Flight(vehicle, pilot_of(vehicle, shown), WaitingClockIn(vehicle, shown))
         finally:
             over.set()
             thread.join(5.0)
@@ -107,7 +108,7 @@ class Here:
         self._vehicle.wait_until(self._vehicle.time + 0.5 * duration)
 
 
-class VehicleTimeIn(VehicleTime):
+class WaitingClockIn(WaitingClock):
     """The vehicle's clock, with a world that looks at the vehicle when it has come so far."""
 
     def __init__(self, vehicle, world: World) -> None:

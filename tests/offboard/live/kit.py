@@ -12,6 +12,7 @@ from offboard.link import Radar
 from offboard.live.lockstep import connect_in_step
 from offboard.live.starting import arm, fly_mission, open_vehicle
 from offboard.live.vehicle import LiveVehicle
+from offboard.live.waiting import WaitingClock
 from offboard.pilot import Frame, Pilot, fly
 from offboard.raw_mission import RawMission
 from offboard.sitl.autopilot import FLAVOURS
@@ -96,7 +97,7 @@ class Flying:
         """Fly on for a while, or to the end."""
         frames = []
         until = self.vehicle.time + seconds
-        for frame in fly([Pilot(self.vehicle, self.radar, self.agent)], VehicleTime(self.vehicle), 1.0):
+        for frame in fly([Pilot(self.vehicle, self.radar, self.agent)], WaitingClock(self.vehicle), 1.0):
             frames.append(frame)
             if self.vehicle.time >= until:
                 break
@@ -105,18 +106,6 @@ class Flying:
     def said(self, severity: str) -> str:
         """All that has been told so far."""
         return "\n".join(e.text for e in self.vehicle.aboard.events if e.severity == severity)
-
-
-class VehicleTime:
-    """The vehicle's clock as the loop's."""
-
-    def __init__(self, vehicle: LiveVehicle) -> None:
-        self._vehicle = vehicle
-        self.now = vehicle.time
-
-    def advance(self, period: float) -> None:
-        self.now += period
-        self._vehicle.wait_until(self.now)
 
 
 @contextlib.contextmanager
