@@ -2,8 +2,8 @@
 
     python examples/companion.py serial:///dev/ttyACM0:921600
 
-A human uploads the mission, arms and starts; from then on what ADSB_VEHICLE and OBSTACLE_DISTANCE_3D report is
-flown round. Any mode change by a human ends our commands until the mission mode is back.
+A human uploads the mission, arms and starts; from then on what ADSB_VEHICLE and OBSTACLE_DISTANCE_3D report
+is flown round. Any mode change by a human ends our commands until the mission mode is back.
 """
 
 import sys

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from typing import overload
 
 import numpy as np
-from pymap3d.vincenty import vdist
 
 from avoidance.types import Floats
 
@@ -125,7 +124,7 @@ class MapFrame:
         first: Floats,
         second: Floats,
     ) -> Floats:
-        """Convert point by point, shape (2, ...): pymap3d errs on arrays in which two points coincide."""
+        """Convert point by point, shape (2, ...)."""
         pairs = [
             convert(self.latitude_deg, self.longitude_deg, a, b)
             for a, b in zip(first.ravel().tolist(), second.ravel().tolist(), strict=True)
@@ -139,14 +138,14 @@ def _inverse(
     """North and east [m] of a position [deg] on the geodesic from home [deg]."""
     if (latitude, longitude) == (home_latitude, home_longitude):
         return 0.0, 0.0
-    distance, azimuth = vdist(home_latitude, home_longitude, latitude, longitude)
-    if not float(distance) < FURTHEST:
+    distance, azimuth = _geodesic(*map(math.radians, (home_latitude, home_longitude, latitude, longitude)))
+    if not distance < FURTHEST:
+        away = f"{distance / 1000:.0f} km from home" if math.isfinite(distance) else "opposite home"
         raise ValueError(
-            f"latitude_deg = {latitude}, longitude_deg = {longitude}, is {float(distance) / 1000:.0f} km "
-            f"from home, must be within {FURTHEST / 1000:.0f} km"
+            f"latitude_deg = {latitude}, longitude_deg = {longitude}, is {away}, "
+            f"must be within {FURTHEST / 1000:.0f} km"
         )
-    direction = math.radians(float(azimuth))
-    return float(distance) * math.cos(direction), float(distance) * math.sin(direction)
+    return distance * math.cos(azimuth), distance * math.sin(azimuth)
 
 
 def _direct(home_latitude: float, home_longitude: float, north: float, east: float) -> tuple[float, float]:
@@ -158,6 +157,53 @@ def _direct(home_latitude: float, home_longitude: float, north: float, east: flo
         math.radians(home_latitude), math.radians(home_longitude), distance, math.atan2(east, north)
     )
     return math.degrees(latitude), (math.degrees(longitude) + 180.0) % 360.0 - 180.0
+
+
+def _geodesic(
+    latitude: float, longitude: float, to_latitude: float, to_longitude: float
+) -> tuple[float, float]:
+    """Length [m] of the geodesic between two positions [rad], and its azimuth at the first [rad].
+
+    The length is infinite for positions (nearly) opposite to one another, where the series fails.
+
+    Notes
+    -----
+    Vincenty 1975, inverse formula (Survey Review 23, 88-93), in plain floats as the direct one below.
+    """
+    u_1 = math.atan((1.0 - FLATTENING) * math.tan(latitude))
+    u_2 = math.atan((1.0 - FLATTENING) * math.tan(to_latitude))
+    sin_1, cos_1, sin_2, cos_2 = math.sin(u_1), math.cos(u_1), math.sin(u_2), math.cos(u_2)
+    apart = turned = math.remainder(to_longitude - longitude, 2.0 * math.pi)
+    for _ in range(100):
+        sin_t, cos_t = math.sin(turned), math.cos(turned)
+        side, ahead = cos_2 * sin_t, cos_1 * sin_2 - sin_1 * cos_2 * cos_t
+        sin_s, cos_s = math.hypot(side, ahead), sin_1 * sin_2 + cos_1 * cos_2 * cos_t
+        if sin_s < 1e-16:
+            return (0.0, 0.0) if cos_s > 0.0 else (math.inf, 0.0)
+        sigma = math.atan2(sin_s, cos_s)
+        sin_alpha = cos_1 * cos_2 * sin_t / sin_s
+        cos2_alpha = 1.0 - sin_alpha**2
+        cos_2m = cos_s - 2.0 * sin_1 * sin_2 / cos2_alpha if cos2_alpha > 1e-15 else 0.0
+        c = FLATTENING / 16.0 * cos2_alpha * (4.0 + FLATTENING * (4.0 - 3.0 * cos2_alpha))
+        series = sigma + c * sin_s * (cos_2m + c * cos_s * (2.0 * cos_2m**2 - 1.0))
+        before, turned = turned, apart + (1.0 - c) * FLATTENING * sin_alpha * series
+        if abs(turned - before) < 1e-14:
+            break
+    else:
+        return math.inf, 0.0
+    a, b = _series(cos2_alpha)
+    inner = cos_s * (2.0 * cos_2m**2 - 1.0)
+    inner -= b / 6.0 * cos_2m * (4.0 * sin_s**2 - 3.0) * (4.0 * cos_2m**2 - 3.0)
+    length = SEMI_MINOR * a * (sigma - b * sin_s * (cos_2m + b / 4.0 * inner))
+    return length, math.atan2(side, ahead)
+
+
+def _series(cos2_alpha: float) -> tuple[float, float]:
+    """Vincenty's A and B of a geodesic by the squared cosine of its azimuth at the equator."""
+    u2 = cos2_alpha * (SEMI_MAJOR**2 - SEMI_MINOR**2) / SEMI_MINOR**2
+    a = 1.0 + u2 / 16384.0 * (4096.0 + u2 * (-768.0 + u2 * (320.0 - 175.0 * u2)))
+    b = u2 / 1024.0 * (256.0 + u2 * (-128.0 + u2 * (74.0 - 47.0 * u2)))
+    return a, b
 
 
 def _along_geodesic(
@@ -176,9 +222,7 @@ def _along_geodesic(
     sigma_1 = math.atan2(sin_u, cos_u * cos_azimuth)
     sin_alpha = cos_u * sin_azimuth
     cos2_alpha = 1.0 - sin_alpha**2
-    u2 = cos2_alpha * (SEMI_MAJOR**2 - SEMI_MINOR**2) / SEMI_MINOR**2
-    a = 1.0 + u2 / 16384.0 * (4096.0 + u2 * (-768.0 + u2 * (320.0 - 175.0 * u2)))
-    b = u2 / 1024.0 * (256.0 + u2 * (-128.0 + u2 * (74.0 - 47.0 * u2)))
+    a, b = _series(cos2_alpha)
     sigma = first = distance / (SEMI_MINOR * a)
     for _ in range(20):
         cos_2m = math.cos(2.0 * sigma_1 + sigma)

@@ -189,7 +189,7 @@ class Editor:
             self._move_on()
             action = self._run.work(self._aboard.telemetry)
             if self._run.started:
-                self._watch.expect(Mode.MISSION, self._aboard.mode, self._aboard.time)
+                self._watch.expect(Mode.MISSION, self._aboard.mode)
                 self._run.started = False
             if self._run.status is EditStatus.CONFIRMED:
                 self._confirmed()
@@ -301,7 +301,7 @@ class Editor:
         radius = ORBIT_TURN_RADII * aboard.performance.turn_radius
         if wanted.hold is not None:
             radius = wanted.hold.radius * wanted.hold.direction
-        self._watch.expect(aboard.rules.goto_mode, aboard.mode, aboard.time)
+        self._watch.expect(aboard.rules.goto_mode, aboard.mode)
         absolute = goal.altitude + aboard.home.altitude_m
         self._goto = aboard.session.ask(Ask.GOTO, latitude_deg, longitude_deg, absolute, radius)
 

@@ -414,7 +414,7 @@ class LiveVehicle:
 
     def _command(self, ask: Ask, mode: Mode, words: str) -> None:
         """Change the mode, and wait until it is seen."""
-        self.watch.expect(mode, self.aboard.mode, self.time)
+        self.watch.expect(mode, self.aboard.mode)
         self._ask(self.aboard.session.ask(ask), words)
         if not self.wait_for(lambda: self.aboard.mode is mode, 5.0):
             raise LinkError(f"the vehicle agreed to {words}, but is in mode {self.aboard.mode_name}")

@@ -13,8 +13,6 @@ LINK_LOST = 3.0
 """The link counts as lost after so long without a message; heartbeats come every second [s]."""
 OWN_EDIT = 3.0
 """A mode change this soon after our own edit, to a mode that it can cause, is not a human's [s]."""
-GRACE = 3.0
-"""A mode that we have asked for may take this long to be seen [s]."""
 CHANGED_FOR = 2.0
 """A mission that is not ours must be seen for this long before it is believed [s]."""
 
@@ -49,8 +47,7 @@ class Watch:
     human: bool = False
     """Someone else flies; nothing is commanded until the mission mode is given back."""
     disarmed: bool = True
-    _asked: float = -math.inf
-    _before: Mode = Mode.OTHER
+    _before: Mode | None = None
     _edited: float = -math.inf
     retried: bool = False
     """The last edit has been sent a second time, because the first made the vehicle leave its mission."""
@@ -62,9 +59,9 @@ class Watch:
         """True while we may command."""
         return not (self.lost or self.human or self.disarmed)
 
-    def expect(self, mode: Mode, before: Mode, time: float) -> None:
-        """We have asked for a mode, at a time of the vehicle's clock [s]; it may need a while to be seen."""
-        self.expected, self._before, self._asked = mode, before, time
+    def expect(self, mode: Mode, before: Mode) -> None:
+        """We have asked for a mode; the one before it is nobody else's doing until the new one is seen."""
+        self.expected, self._before = mode, before
 
     def edited(self, time: float, again: bool = False) -> None:
         """We have edited the mission, at a time of the vehicle's clock [s]; `again` after it was dropped."""
@@ -105,10 +102,10 @@ class Watch:
 
     def _mode(self, mode: Mode, time: float) -> list[Seen]:
         if mode is self.expected or (self.human and mode is Mode.MISSION):
-            self._asked = -math.inf
+            self._before = None
             back, self.human, self.expected = self.human, False, mode
             return [Seen.GIVEN_BACK] if back else []
-        if self.human or (mode is self._before and time - self._asked < GRACE):
+        if self.human or mode is self._before:
             return []
         if mode in self.rules.edit_may_cause and time - self._edited < OWN_EDIT and not self.retried:
             self.retried = True

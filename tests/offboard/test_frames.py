@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
+from pymap3d.vincenty import vdist
 
 from offboard.frames import MapFrame
 
@@ -82,3 +83,15 @@ def test_a_quarter_of_the_equator_has_its_length() -> None:
     north, east = MapFrame(0.0, 0.0).to_map(0.0, 45.0)
     assert north == pytest.approx(0.0, abs=1e-3)
     assert east == pytest.approx(0.25 * math.pi * 6378137.0, abs=1e-3)
+
+
+@given(
+    latitude=st.floats(-85.0, 85.0), longitude=st.floats(-180.0, 180.0), distance=DISTANCE, azimuth=AZIMUTH
+)
+def test_an_independent_implementation_agrees_within_a_tenth_of_a_millimetre(
+    latitude: float, longitude: float, distance: float, azimuth: float
+) -> None:
+    frame = MapFrame(latitude, longitude)
+    place = frame.to_geodetic(distance * math.cos(azimuth), distance * math.sin(azimuth))
+    theirs, _ = vdist(latitude, longitude, *place)
+    assert math.hypot(*frame.to_map(*place)) == pytest.approx(float(theirs), abs=1e-4)
