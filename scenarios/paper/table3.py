@@ -25,11 +25,11 @@ HEADS = (
     Head("length", "paper [m]"),
     Head("plan length", "ours [m]", ours=True),
     Head("path flown", "ours [m]", ours=True),
-    Head("÷ shortest", "path flown, of the shortest safe way", ours=True),
-    Head("added", "paper: over its own empty mission [m]"),
-    Head("added", "ours: plan, the same [m]", ours=True),
-    Head("flown safely", "ours, where a way exists", ours=True),
-    Head("share", "ours, 95 % Wilson interval", ours=True),
+    Head("÷ shortest", "flown, of the shortest safe way", ours=True),
+    Head("added", "paper [m]"),
+    Head("added", "ours [m]", ours=True),
+    Head("safe", "ours, where a way exists", ours=True),
+    Head("share", "95 % Wilson", ours=True),
 )
 CLEAR = "0"
 """The row without obstacles: no world differs, so one run says all."""

@@ -164,7 +164,8 @@ def _matrix(title: str, names: Sequence[str], verdicts: Mapping[tuple[str, str],
                 cells.append(Cell("", "dom-self"))
                 continue
             verdict = verdicts[a, b]
-            cells.append(Cell(f"{verdict.word}, p = {verdict.p_value:.3f}", SHOWN[verdict.word]))
+            p_value = "p < 0.001" if verdict.p_value < 0.001 else f"p = {verdict.p_value:.3f}"
+            cells.append(Cell(f"{verdict.word}, {p_value}", SHOWN[verdict.word]))
         lines.append(tuple(cells))
     heads = (Head("row against column", left=True), *(Head(short[name]) for name in names))
     return Grid(heads, tuple(lines), title)

@@ -25,10 +25,10 @@ def section(options: Options) -> Section:
     heads = (
         Head("case", left=True),
         Head("planner", left=True),
-        Head("mean", "paper"),
-        Head("median", "paper"),
+        Head("mean", "printed"),
+        Head("median", "printed"),
         *(
-            Head(title, name, ours=True)
+            Head(title, f"ours, {name}", ours=True)
             for name in PRESETS
             for title in ("mean", "median", "feasible", "optimum")
         ),
