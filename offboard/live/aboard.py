@@ -59,7 +59,7 @@ class Aboard:
     @property
     def time(self) -> float:
         """Seconds since the start."""
-        return self.clock.now(self.session.wall())
+        return self.clock.now()
 
     @property
     def mode(self) -> Mode:

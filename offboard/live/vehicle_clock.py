@@ -13,6 +13,11 @@ FASTEST = 100.0
 class VehicleClock:
     """Seconds since the start by the vehicle's clock; never goes back, also not when the autopilot restarts.
 
+    It moves only when somebody has listened (`heard`): messages that wait unread are no silence. In silence
+    it goes on no faster than the wall's: a simulation at twenty times real time that stands still for three
+    seconds is not a minute further on. One that turns out to have stood still goes on from the time that has
+    been shown meanwhile.
+
     Parameters
     ----------
     first : float
@@ -27,17 +32,20 @@ class VehicleClock:
         self._epoch = first
         self._newest = first
         self._heard = wall
+        self._listened = wall
         self._mark = (first, wall)
         self._shown = 0.0
 
     def heard(self, newest: float, wall: float) -> None:
-        """The vehicle's newest time stamp, and the wall clock on its arrival [s]."""
+        """All that has come in has been read: the vehicle's newest time stamp, and the wall clock now [s]."""
+        self._listened = wall
         if newest < self._newest - 1.0:  # it has been switched off and on
-            self._epoch = newest - self.now(wall)
+            self._epoch = newest - self.now()
             self._mark = (newest, wall)
             self._newest = newest
         elif newest > self._newest:
             self._newest = newest
+            self._epoch = min(self._epoch, newest - self._shown)
         else:
             return
         self._heard = wall
@@ -50,10 +58,10 @@ class VehicleClock:
         """Count the seconds from the newest time stamp on: the flight begins."""
         self._epoch, self._shown = self._newest, 0.0
 
-    def now(self, wall: float) -> float:
-        """Seconds since the start, at a time of the wall clock [s]."""
-        silent = max(wall - self._heard - SILENCE, 0.0)
-        self._shown = max(self._shown, self._newest - self._epoch + self.rate * silent)
+    def now(self) -> float:
+        """Seconds since the start, when somebody last listened."""
+        silent = max(self._listened - self._heard - SILENCE, 0.0)
+        self._shown = max(self._shown, self._newest - self._epoch + min(self.rate, 1.0) * silent)
         return self._shown
 
     def ours(self, vehicle: float) -> float:
