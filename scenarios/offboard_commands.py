@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from avoidance.parameters import Parameters
     from offboard.live.vehicle import LiveVehicle
     from scenarios.live_flight import LiveFlight
-    from scenarios.live_mission import LiveMission
+    from scenarios.live_mission import LiveMission, SourceChoice
 
 
 def offboard(
@@ -97,7 +97,7 @@ def offboard(
 def _connect_and_fly(
     url: str,
     wanted: LiveMission,
-    source: object,
+    source: SourceChoice,
     parameters: Parameters,
     directory: Path,
     *,
@@ -110,26 +110,42 @@ def _connect_and_fly(
     """Connect, prepare, fly, judge, write, show; the exit code."""
     from offboard.live.session import connect  # noqa: PLC0415
     from offboard.live.starting import open_vehicle  # noqa: PLC0415
-    from scenarios.live_flight import LiveFlight, scenario_of  # noqa: PLC0415
-    from scenarios.live_mission import SourceChoice  # noqa: PLC0415
-    from scenarios.live_show import LiveStatus, say  # noqa: PLC0415
+    from scenarios.live_show import say  # noqa: PLC0415
 
-    if not isinstance(source, SourceChoice):
-        raise TypeError("source must come from source_of")
     say(f"Waiting for a vehicle on {url} (up to {timeout:g} s) ...")
     session = connect(url, timeout)
     with contextlib.closing(session):
         vehicle = open_vehicle(session, wanted.frame, wind_bound=wind_bound, touch=touch)
-        vehicle.aboard.listener = lambda event: say(event.text, event.severity)
-        _prepare(vehicle, wanted, arm=arm)
-        scenario = scenario_of(vehicle, source.scenario or wanted.scenario, wanted.name)
-        made = source.make(vehicle, parameters)
-        with contextlib.closing(LiveFlight(scenario, vehicle, made, parameters, wanted.seed)) as flight:
-            with LiveStatus(vehicle, flight, source.text) as status:
-                for frame in _until_interrupted(flight):
-                    status.update(frame)
-            vehicle.aboard.listener = None
-            return _write(flight, directory, as_json=as_json)
+        return fly(vehicle, wanted, source, parameters, directory, arm=arm, as_json=as_json)
+
+
+def fly(
+    vehicle: LiveVehicle,
+    wanted: LiveMission,
+    source: SourceChoice,
+    parameters: Parameters,
+    directory: Path,
+    *,
+    arm: bool = False,
+    as_json: bool = False,
+) -> int:
+    """Prepare a vehicle that is there, fly, judge, write, show; the exit code.
+
+    Nothing is commanded before it is certain that obstacles can be known.
+    """
+    from scenarios.live_flight import LiveFlight, scenario_of  # noqa: PLC0415
+    from scenarios.live_show import LiveStatus, say  # noqa: PLC0415
+
+    vehicle.aboard.listener = lambda event: say(event.text, event.severity)
+    made = source.make(vehicle, parameters)
+    _prepare(vehicle, wanted, arm=arm)
+    scenario = scenario_of(vehicle, source.scenario or wanted.scenario, wanted.name)
+    with contextlib.closing(LiveFlight(scenario, vehicle, made, parameters, wanted.seed)) as flight:
+        with LiveStatus(vehicle, flight, source.text) as status:
+            for frame in _until_interrupted(flight):
+                status.update(frame)
+        vehicle.aboard.listener = None
+        return _write(flight, directory, as_json=as_json)
 
 
 def _prepare(vehicle: LiveVehicle, wanted: LiveMission, *, arm: bool) -> None:
@@ -146,17 +162,21 @@ def _prepare(vehicle: LiveVehicle, wanted: LiveMission, *, arm: bool) -> None:
         f"acceptance radius {can.acceptance_radius:g} m; mode {aboard.mode_name}, "
         f"{'armed' if aboard.telemetry.armed else 'disarmed'}"
     )
-    if wanted.raw is None or not vehicle.touch:
-        vehicle.adopt_mission()
-    else:
-        begin = wanted.begin
-        starting.check_distance(vehicle, *begin)
-        vehicle.upload_raw(starting.with_take_off(wanted.raw, vehicle))
     if not vehicle.touch:
+        vehicle.adopt_mission()
         return
     flying = aboard.telemetry.armed and aboard.mode is Mode.MISSION
-    if not (flying or arm or aboard.simulated):
-        _ask(f"{'Start the mission' if aboard.telemetry.armed else 'ARM the vehicle and start its mission'}?")
+    question = "REPLACE the mission that it flies" if flying and wanted.raw is not None else ""
+    if not flying:
+        question = "Start the mission" if aboard.telemetry.armed else "ARM the vehicle and start its mission"
+    if wanted.raw is not None:
+        starting.check_distance(vehicle, *wanted.begin)
+    if question and not (arm or aboard.simulated):
+        _ask(f"{question}?")
+    if wanted.raw is None:
+        vehicle.adopt_mission()
+    else:
+        vehicle.upload_raw(starting.with_take_off(wanted.raw, vehicle))
     starting.arm(vehicle)
     starting.fly_mission(vehicle)
 
@@ -166,9 +186,11 @@ def _ask(question: str) -> None:
     from scenarios.errors import ScenarioError  # noqa: PLC0415
 
     if not sys.stdin.isatty():
-        raise ScenarioError("--arm", "needed: the vehicle may be real, and nobody is there to be asked")
+        raise ScenarioError(
+            "--arm", "needed: the vehicle may be real, and nobody is there to ask; nothing was sent"
+        )
     if not typer.confirm(question, err=True):
-        raise ScenarioError("--arm", "not armed, nothing was started")
+        raise ScenarioError("--arm", "nothing was sent, nothing was started")
 
 
 def _until_interrupted(flight: LiveFlight) -> Iterator[object]:

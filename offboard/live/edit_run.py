@@ -102,8 +102,7 @@ class EditRun:
             select=True,
             start=start,
         )
-        self._tokens: set[int] = set()
-        self._upload = -1
+        self._upload = self._select = -1
         self._sent = self._selected = math.inf
         self._accepted = False
         self._refused = False
@@ -123,12 +122,10 @@ class EditRun:
         return EditRecord(time, status, 1e3 * (self._session.wall() - self.begun))
 
     def reply(self, reply: Reply) -> None:
-        """Take over the outcome of a request; those of others are left alone."""
-        if reply.token not in self._tokens:
-            return
-        if reply.ask is Ask.UPLOAD and reply.token == self._upload:
+        """Take over the outcome of a request; those of others and of earlier attempts are left alone."""
+        if reply.token == self._upload:
             self._accepted, self._refused = reply.ok, not reply.ok
-        elif not reply.ok and reply.ask is Ask.SELECT:
+        elif reply.token == self._select and not reply.ok:
             self._refused = True
 
     def move_on(self) -> None:
@@ -152,14 +149,14 @@ class EditRun:
             case EditAction.SEND:
                 self._accepted = self._refused = False
                 self._sent, self._selected = self._session.wall(), math.inf
+                self._select = -1
                 self._upload = self._session.upload(self._wire, self._current)
-                self._tokens.add(self._upload)
             case EditAction.SELECT:
                 self._selected = self._session.wall()
-                self._tokens.add(self._session.ask(Ask.SELECT, self._current))
+                self._select = self._session.ask(Ask.SELECT, self._current)
             case EditAction.START:
                 self.started = True
-                self._tokens.add(self._session.ask(Ask.MISSION_MODE))
+                self._session.ask(Ask.MISSION_MODE)
             case _:
                 pass
         return action

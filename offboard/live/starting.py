@@ -14,7 +14,7 @@ from offboard.live.messages import Ask, Message, Session
 from offboard.live.telemetry import Telemetry
 from offboard.live.vehicle import LiveVehicle
 from offboard.live.vehicle_clock import VehicleClock
-from offboard.raw_mission import RELATIVE_INT, TAKE_OFF, RawItem, RawMission
+from offboard.raw_mission import TAKE_OFF, RawItem, RawMission
 
 TOO_FAR = 100e3
 """A mission whose home is further away than this from the vehicle is not the vehicle's [m]."""
@@ -105,7 +105,7 @@ def with_take_off(raw: RawMission, vehicle: LiveVehicle) -> RawMission:
     if raw.takes_off or airborne:
         return raw
     first = raw.items[raw.flown_to[0]]
-    begin = RawItem(TAKE_OFF, RELATIVE_INT, (15.0, 0.0, 0.0, math.nan), first.x, first.y, first.z)
+    begin = RawItem(TAKE_OFF, first.frame, (15.0, 0.0, 0.0, math.nan), first.x, first.y, first.z)
     return RawMission.of((begin, *raw.items))
 
 

@@ -1,0 +1,90 @@
+"""`sidestep offboard`: bad input, and what is never done to a vehicle without being asked."""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+
+import pytest
+from typer.testing import CliRunner
+
+from avoidance.parameters import DEFAULT
+from offboard.errors import LinkError
+from offboard.live.lockstep import connect_in_step
+from offboard.live.messages import Message
+from offboard.live.starting import open_vehicle, with_take_off
+from offboard.raw_mission import RawItem, RawMission
+from offboard.sitl.autopilot import FLAVOURS
+from scenarios.cli import app
+from scenarios.errors import ScenarioError
+from scenarios.live_mission import mission_of, source_of
+from scenarios.offboard_commands import fly
+from scenarios.sitl_world import SitlWorld
+from tests.offboard.live.kit import SMALL, STEP, Simulation
+
+
+@contextlib.contextmanager
+def waiting(*, simulated=False):
+    """A vehicle that waits with a mission of its own, and has not said that it is a simulation."""
+    with SitlWorld(SMALL, DEFAULT, FLAVOURS["px4"], SMALL.fleet) as world:
+        simulation = Simulation(world)
+        with contextlib.closing(connect_in_step(simulation, STEP)) as session:
+            vehicle = open_vehicle(session)
+            vehicle.aboard.simulated = simulated
+            yield simulation, vehicle
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--mission", "no-such"], "no-such: unknown scenario"),
+        (["--mission", "none.plan"], "none.plan: cannot be read"),
+        (["--obstacles", "udp:70000"], "--obstacles: 'udp:70000'"),
+        (["--preset", "bold"], "'bold' is unknown"),
+        (["--connect", "fax://1"], "fax://1 cannot be opened"),
+    ],
+)
+def test_bad_input_is_one_message(arguments, words, tmp_path):
+    result = CliRunner().invoke(
+        app, ["offboard", *arguments, "--timeout", "0.1", "-o", str(tmp_path / "run")]
+    )
+    assert result.exit_code == 2
+    assert words in result.output
+    assert "Traceback" not in result.output
+
+
+def test_a_vehicle_that_may_be_real_is_left_alone_until_somebody_says_yes(tmp_path):
+    wanted = mission_of("single")
+    with waiting() as (simulation, vehicle):
+        before = simulation.mission()
+        with pytest.raises(ScenarioError, match="nothing was sent"):
+            fly(vehicle, wanted, source_of(None, wanted), DEFAULT, tmp_path)
+        assert simulation.mission() == before
+        assert not simulation.autopilot.captain.armed
+
+
+def test_no_vehicle_is_armed_whose_obstacles_cannot_be_known(tmp_path):
+    wanted = mission_of("single")
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+        taken.bind(("0.0.0.0", 0))
+        port = taken.getsockname()[1]
+        with waiting(simulated=True) as (simulation, vehicle):
+            with pytest.raises(LinkError, match=f"UDP port {port}"):
+                fly(vehicle, wanted, source_of(f"udp:{port}", wanted), DEFAULT, tmp_path, arm=True)
+            assert not simulation.autopilot.captain.armed
+
+
+def test_a_take_off_ends_at_the_altitude_of_the_first_waypoint_in_its_own_frame():
+    above_sea = RawItem(16, 5, (0.0, 0.0, 0.0, 0.0), 143900000, 766000000, 800.0)
+    with waiting() as (simulation, vehicle):
+        vehicle.aboard.telemetry.fixes.clear()
+        on_ground = {
+            "time_boot_ms": 1000,
+            "lat": 143900000,
+            "lon": 766000000,
+            "relative_alt": 0,
+            "alt": 600_000,
+        }
+        vehicle.aboard.telemetry.feed(Message("GLOBAL_POSITION_INT", on_ground))
+        first = with_take_off(RawMission.of((above_sea, above_sea)), vehicle).items[0]
+    assert (first.command, first.frame, first.z) == (22, 5, 800.0)
