@@ -76,15 +76,10 @@ def test_no_vehicle_is_armed_whose_obstacles_cannot_be_known(tmp_path):
 
 def test_a_take_off_ends_at_the_altitude_of_the_first_waypoint_in_its_own_frame():
     above_sea = RawItem(16, 5, (0.0, 0.0, 0.0, 0.0), 143900000, 766000000, 800.0)
-    with waiting() as (simulation, vehicle):
+    with waiting() as (_, vehicle):
         vehicle.aboard.telemetry.fixes.clear()
-        on_ground = {
-            "time_boot_ms": 1000,
-            "lat": 143900000,
-            "lon": 766000000,
-            "relative_alt": 0,
-            "alt": 600_000,
-        }
+        place = {"time_boot_ms": 1000, "lat": 143900000, "lon": 766000000}
+        on_ground = {**place, "relative_alt": 0, "alt": 600_000, "vx": 0, "vy": 0, "vz": 0, "hdg": 0}
         vehicle.aboard.telemetry.feed(Message("GLOBAL_POSITION_INT", on_ground))
         first = with_take_off(RawMission.of((above_sea, above_sea)), vehicle).items[0]
     assert (first.command, first.frame, first.z) == (22, 5, 800.0)
