@@ -1,7 +1,7 @@
 """Mission edits over a link: how long they take, and what becomes of them. Prints Markdown tables.
 
-    python benchmarks/bench_offboard.py            all of it, about five minutes
-    python benchmarks/bench_offboard.py --flights  only the flights against their twins in process
+    python benchmarks/bench_offboard.py            all of it, about half an hour
+    python benchmarks/bench_offboard.py --flights  only the flights
 
 The simulated autopilot is `sidestep sitl` in a process of its own; MAVSDK talks to it over UDP.
 """
@@ -9,6 +9,7 @@ The simulated autopilot is `sidestep sitl` in a process of its own; MAVSDK talks
 from __future__ import annotations
 
 import contextlib
+import json
 import math
 import socket
 import subprocess
@@ -156,10 +157,30 @@ def flights() -> None:
                 )
 
 
+def pair() -> None:
+    """Two vehicles towards each other, each watched over by a process of its own."""
+    scenario = str(Path(__file__).parent / "reference" / "offboard-pair.toml")
+    with (
+        tempfile.TemporaryDirectory() as folder,
+        sitl("--vehicles", "2", "--speed", "20", scenario=scenario) as port,
+    ):
+        watchers = [
+            subprocess.Popen(
+                [sys.executable, "-m", "scenarios.cli", "offboard", "--obstacles", "mavlink", "--connect"]
+                + [f"udpin://127.0.0.1:{port + number}", "-o", str(Path(folder) / str(number))],
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+            )
+            for number in range(2)
+        ]
+        codes = [watcher.wait(300) for watcher in watchers]
+        summaries = [json.loads((Path(folder) / str(n) / "summary.json").read_text()) for n in range(2)]
+    apart = ", ".join(f"{summary['min_separation_m']:.0f} m" for summary in summaries)
+    print(f"Two vehicles over ADSB_VEHICLE at 20 times real time: exit codes {codes}, separation {apart}.")
+
+
 def injected(directory: Path) -> list[tuple[float, float]]:
     """The waypoints that avoidance put in during a run, in their order."""
-    import json  # noqa: PLC0415
-
     rows = [json.loads(line) for line in (directory / "decisions.jsonl").read_text().splitlines()]
     return [(w["north_m"], w["east_m"]) for row in rows for w in row["waypoints"]]
 
@@ -169,3 +190,5 @@ if __name__ == "__main__":
         edits()
         print()
     flights()
+    print()
+    pair()
