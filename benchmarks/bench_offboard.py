@@ -123,8 +123,6 @@ def edits() -> None:
 
 def flights() -> None:
     """The table of flights."""
-    import json  # noqa: PLC0415
-
     print(
         "| scenario | autopilot | speed | violations | least margin | edits | waypoints, largest distance |"
     )
@@ -166,8 +164,15 @@ def pair() -> None:
     ):
         watchers = [
             subprocess.Popen(
-                [sys.executable, "-m", "scenarios.cli", "offboard", "--obstacles", "mavlink", "--connect"]
-                + [f"udpin://127.0.0.1:{port + number}", "-o", str(Path(folder) / str(number))],
+                [
+                    *(sys.executable, "-m", "scenarios.cli", "offboard", "--obstacles", "mavlink"),
+                    *(
+                        "--connect",
+                        f"udpin://127.0.0.1:{port + number}",
+                        "-o",
+                        str(Path(folder) / str(number)),
+                    ),
+                ],
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
             )
