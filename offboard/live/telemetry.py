@@ -116,6 +116,8 @@ class Telemetry:
     """Wall clock of the last message [s]."""
     heartbeat: float = -math.inf
     """Wall clock of the last heartbeat [s]."""
+    placed: float = -math.inf
+    """Wall clock of the last position that was taken [s]."""
     late: int = 0
     """Messages that came out of order and were left out."""
     fixes: deque[Fix] = field(default_factory=deque)
@@ -235,6 +237,7 @@ class Telemetry:
             self.restarts += 1
             self.fixes.clear()
         self._older = 0
+        self.placed = message.arrived
         heading = message.number("hdg") / 100.0
         self.fixes.append(
             Fix(

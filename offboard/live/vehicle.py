@@ -361,6 +361,13 @@ class LiveVehicle:
                 tell("alarm", "the link is lost; the vehicle flies on along the mission that it has")
             case Seen.LINK_BACK:
                 tell("warning", "the link is back")
+            case Seen.NO_POSITION:
+                tell(
+                    "alarm",
+                    "the vehicle tells no position any more; where it is meanwhile is a guess: take over",
+                )
+            case Seen.POSITION_BACK:
+                tell("warning", "the vehicle tells its position again")
             case Seen.RESTARTED:
                 self.editor.give_up()
                 self._ask_at = self.aboard.session.wall()

@@ -11,6 +11,8 @@ from offboard.live.telemetry import Telemetry
 
 LINK_LOST = 3.0
 """The link counts as lost after so long without a message; heartbeats come every second [s]."""
+BLIND = 3.0
+"""A vehicle that is heard but tells no position for so long cannot be led round anything [s]."""
 OWN_EDIT = 3.0
 """A mode change this soon after our own edit, to a mode that it can cause, is not a human's [s]."""
 CHANGED_FOR = 2.0
@@ -22,6 +24,8 @@ class Seen(Enum):
 
     LINK_LOST = "link lost"
     LINK_BACK = "link back"
+    NO_POSITION = "no position"
+    POSITION_BACK = "the position is back"
     RESTARTED = "autopilot restarted"
     TAKEN = "a human has taken over"
     GIVEN_BACK = "the mission mode is back"
@@ -44,6 +48,8 @@ class Watch:
     """What we last asked it to do."""
     lost: bool = False
     """The link is lost."""
+    blind: bool = False
+    """It is heard, but tells no position."""
     human: bool = False
     """Someone else flies; nothing is commanded until the mission mode is given back."""
     disarmed: bool = True
@@ -52,6 +58,7 @@ class Watch:
     retried: bool = False
     """The last edit has been sent a second time, because the first made the vehicle leave its mission."""
     _restarts: int = 0
+    _back: float = -math.inf
     _strange_since: float = math.inf
 
     @property
@@ -72,6 +79,7 @@ class Watch:
         seen = self._link(telemetry, wall)
         if self.lost:
             return seen
+        seen += self._position(telemetry, wall)
         if telemetry.restarts != self._restarts:
             self._restarts = telemetry.restarts
             seen.append(Seen.RESTARTED)
@@ -98,7 +106,15 @@ class Watch:
         if lost == self.lost:
             return []
         self.lost = lost
+        self._back = wall
         return [Seen.LINK_LOST if lost else Seen.LINK_BACK]
+
+    def _position(self, telemetry: Telemetry, wall: float) -> list[Seen]:
+        blind = wall - max(telemetry.placed, self._back) > BLIND
+        if blind == self.blind:
+            return []
+        self.blind = blind
+        return [Seen.NO_POSITION if blind else Seen.POSITION_BACK]
 
     def _mode(self, mode: Mode, time: float) -> list[Seen]:
         if mode is self.expected or (self.human and mode is Mode.MISSION):
