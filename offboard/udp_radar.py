@@ -25,6 +25,8 @@ KEEPS = 3.0
 """A report is used for so long [s]."""
 LARGEST = 65536
 """Bytes of a datagram."""
+AT_ONCE = 1000
+"""Most datagrams read in one scan: who floods the port does not hold up the decision."""
 PLACES = (("latitude_deg", "longitude_deg"), ("range_m", "bearing_deg"), ("north_m", "east_m"))
 """The ways to give a place."""
 
@@ -80,12 +82,15 @@ class UdpRadar:
 
     def _lines(self) -> list[bytes]:
         found: list[bytes] = []
-        while True:
+        for _ in range(AT_ONCE):
             try:
                 data = self._socket.recv(LARGEST)
             except (BlockingIOError, InterruptedError):
-                return found
+                break
+            except ConnectionError:  # so Windows tells that a sender has gone
+                continue
             found += [line for line in data.splitlines() if line.strip()]
+        return found
 
 
 def sighting_of(line: bytes, own: Ownship, frame: MapFrame) -> Sighting:

@@ -69,6 +69,7 @@ WithAvoidance = Annotated[
 ]
 Connect = Annotated[str, typer.Option(metavar="URL", help="With it: where MAVSDK meets the autopilot.")]
 Arm = Annotated[bool, typer.Option("--arm", help="With it: arm and start without asking.")]
+DEFAULT_LINKS = "udp://127.0.0.1:14550,udp://127.0.0.1:14540"
 DEFAULT_HOME = "47.397742,8.545594,488,0"
 DEFAULT_START = "2025-06-21T08:00Z"
 
@@ -82,8 +83,12 @@ def px4(
         str | None, typer.Option(metavar="DEV:BAUD", help="A board over USB or serial, in real time.")
     ] = None,
     mission_link: Annotated[
-        str, typer.Option(metavar="URLS", help="With --serial: MAVLink is passed on to udp://HOST:PORT[,…].")
-    ] = "udp://127.0.0.1:14550,udp://127.0.0.1:14540",
+        str | None,
+        typer.Option(
+            metavar="URLS",
+            help="With --serial: MAVLink is passed on to udp://HOST:PORT[,…]; else to 14550 and 14540 here.",
+        ),
+    ] = None,
     speed: Annotated[
         float, typer.Option(min=0.0, max=1000.0, help="Times real time; 0: as fast as PX4 answers.")
     ] = 1.0,
@@ -121,6 +126,7 @@ def px4(
     130 interrupted (what was flown is written).
     """
     with _errors():
+        from offboard.hil.errors import OptionError  # noqa: PLC0415
         from offboard.hil.sensors import SensorModel  # noqa: PLC0415
         from scenarios.hil_options import options_of  # noqa: PLC0415
         from scenarios.hil_run import run_px4_serial, run_px4_tcp  # noqa: PLC0415
@@ -132,8 +138,10 @@ def px4(
         if self_test:
             _self_test(options, seconds, real_time=real_time, as_json=as_json)
         options, course = _course(options, output, until, timeout, as_json, with_avoidance, connect, arm)
+        if mission_link is not None and serial is None:
+            raise OptionError("--mission-link", ["only with --serial: PX4 SITL has MAVLink ports of its own"])
         if serial is not None:
-            run_px4_serial(options, serial, mission_link, course)
+            run_px4_serial(options, serial, mission_link or DEFAULT_LINKS, course)
         else:
             run_px4_tcp(options, (host, tcp), speed, course)
 

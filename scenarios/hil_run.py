@@ -21,7 +21,7 @@ from offboard.hil.errors import LinkLost
 from offboard.hil.json_bridge import JsonBridge
 from offboard.hil.pipes import SerialPipe, TcpServer, UdpLinks, UdpPort, parse_links
 from offboard.hil.px4_bridge import Px4Bridge
-from scenarios.command_errors import INTERRUPTED, OK
+from scenarios.command_errors import INTERRUPTED, OK, UNSAFE
 from scenarios.hil_avoidance import PREFIX, Together, end
 from scenarios.hil_priority import real_time
 from scenarios.hil_record import HilRecorder, check_directory
@@ -106,7 +106,8 @@ def _serve(rig: Rig, bridge: JsonBridge | Px4Bridge, steps: Iterator[bool], cour
             _loop(rig, bridge, steps, course, stop, status, companion)
         except LinkLost as error:
             lost = str(error)
-        code = OK if companion is None else end(companion)
+        finally:  # also when the model fails: nobody is left behind
+            code = OK if companion is None else end(companion)
     status.close()
     ending = lost or ("interrupted" if stop else "time is up" if companion is None else "the mission is over")
     summary = recorder.summary(bridge.counts) | {"ending": ending}
@@ -120,6 +121,8 @@ def _serve(rig: Rig, bridge: JsonBridge | Px4Bridge, steps: Iterator[bool], cour
     _tell(summary, course)
     if lost:
         raise LinkError(lost)
+    if code == OK and summary.get("violations"):
+        code = UNSAFE  # by the plant's own track
     raise typer.Exit(INTERRUPTED if stop else code)
 
 
@@ -168,7 +171,8 @@ def _tell(summary: dict[str, Any], course: Course) -> None:
             sys.stdout.write(json.dumps(summary, indent=2) + "\n")
         return
     link = ", ".join(f"{name} {value}" for name, value in summary["link"].items() if value)
-    typer.echo(f"{summary['flight_time_s']:.1f} s flown, {summary['phase']}; {link}; {summary['ending']}")
+    parts = [f"{summary['flight_time_s']:.1f} s flown", summary["phase"] or "", link, summary["ending"]]
+    typer.echo("; ".join(part for part in parts if part))
     if (kept := summary.get("real_time")) is not None:
         typer.echo(
             f"real time: {kept['late']} of {kept['steps']} steps more than a period late "

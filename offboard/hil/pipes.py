@@ -14,6 +14,10 @@ from offboard.errors import LinkError
 from offboard.hil.errors import LinkLost, OptionError
 
 _CHUNK = 65536
+_AT_ONCE = 64
+"""Most datagrams read in one go: who floods a port does not hold up the steps."""
+_MOST_PEERS = 32
+"""More ground stations than this are not answered."""
 _LINK = re.compile(r"udp(?:out)?:(?://)?(?P<host>[^:/]+):(?P<port>\d+)")
 
 
@@ -180,15 +184,17 @@ class UdpLinks:
     def receive(self) -> bytes:
         """What has come from all peers, in the order of arrival; never waits."""
         parts: list[bytes] = []
-        while True:
+        for _ in range(_AT_ONCE):
             try:
                 data, peer = self._socket.recvfrom(_CHUNK)
             except BlockingIOError:
-                return b"".join(parts)
-            except OSError:  # a peer's port was closed: its answer to our last datagram
+                break
+            except ConnectionError:  # a peer's port was closed: its answer to our last datagram
                 continue
-            self._peers[peer] = None
-            parts.append(data)
+            if peer in self._peers or len(self._peers) < _MOST_PEERS:
+                self._peers[peer] = None
+                parts.append(data)
+        return b"".join(parts)
 
     def close(self) -> None:
         """Free the socket."""

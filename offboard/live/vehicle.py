@@ -26,6 +26,16 @@ ASK_AGAIN = 3.0
 """A mission that could not be had is asked for again after this time [s, wall clock]."""
 REPEAT = 30.0
 """The same alarm is given again after this time [s]."""
+WORDS = {
+    Seen.LINK_BACK: ("warning", "the link is back"),
+    Seen.NO_POSITION: (
+        "alarm",
+        "the vehicle tells no position any more; where it is meanwhile is a guess: take over",
+    ),
+    Seen.POSITION_BACK: ("warning", "the vehicle tells its position again"),
+    Seen.ARMED: ("info", "the vehicle has been armed"),
+}
+"""What is only told."""
 NOT_ANSWERED = Reply(Ask.UPLOAD, -1, False, "no answer")
 SLOWEST_POLL = 0.1
 """Time limits are looked at this often while nothing comes in [s, wall clock]."""
@@ -359,15 +369,6 @@ class LiveVehicle:
                 self.link_losses += 1
                 self.editor.give_up()
                 tell("alarm", "the link is lost; the vehicle flies on along the mission that it has")
-            case Seen.LINK_BACK:
-                tell("warning", "the link is back")
-            case Seen.NO_POSITION:
-                tell(
-                    "alarm",
-                    "the vehicle tells no position any more; where it is meanwhile is a guess: take over",
-                )
-            case Seen.POSITION_BACK:
-                tell("warning", "the vehicle tells its position again")
             case Seen.RESTARTED:
                 self.editor.give_up()
                 self._ask_at = self.aboard.session.wall()
@@ -394,8 +395,8 @@ class LiveVehicle:
             case Seen.DISARMED if not self._finished:
                 self.editor.give_up()
                 tell("alarm", "the vehicle has been disarmed")
-            case Seen.ARMED:
-                tell("info", "the vehicle has been armed")
+            case _ if seen in WORDS:
+                tell(*WORDS[seen])
             case _:
                 pass
 

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import contextlib
+import itertools
 import math
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+import typer
 
+from fmu.errors import PlantError
+from offboard.hil.pipes import UdpPort
 from offboard.hil.plant import NEUTRAL, Phase
 from scenarios.errors import RunDirectoryError, ScenarioError
 from scenarios.hil_avoidance import PREFIX, Together, end
 from scenarios.hil_record import HilRecorder
+from scenarios.hil_run import Course, _serve
 from scenarios.hil_setup import HilOptions, Rig
 from scenarios.target import FILES_OF_A_RUN
 from tests.offboard.hil.fakes import AT_REST
@@ -104,3 +110,45 @@ def test_the_heading_is_that_of_the_first_leg(tmp_path):
     first, then = flown.scenario.mission[:2]
     expected = math.atan2(then.east - first.east, then.north - first.north)
     assert flown.options(HilOptions()).heading == pytest.approx(expected)
+
+
+class Other:
+    """A process beside the bridge, and what the plant's track is said to show."""
+
+    scenario = None
+
+    def __init__(self, directory, code, violations=0):
+        self.directory = directory
+        self._code = code
+        self._violations = violations
+        self.process = None
+
+    def begin(self):
+        self.process = subprocess.Popen([sys.executable, "-c", self._code])
+        return self.process
+
+    def truth(self, rows):
+        return {"min_separation_m": 1.0, "min_margin_m": -1.0, "violations": self._violations}
+
+
+def test_nobody_is_left_behind_when_the_model_fails(tmp_path):
+    def steps():
+        yield False
+        raise PlantError("gone", 1.0, "error")
+
+    other = Other(tmp_path, "import time; time.sleep(60)")
+    with Rig(HilOptions()) as rig, contextlib.closing(UdpPort(0)) as port, pytest.raises(PlantError):
+        _serve(rig, rig.json_bridge(port), steps(), Course(together=other))
+    assert other.process.returncode is not None
+
+
+@pytest.mark.parametrize(("violations", "code"), [(0, 0), (1, 1)])
+def test_a_sphere_entered_by_the_plants_own_track_is_no_safe_flight(tmp_path, violations, code):
+    other = Other(tmp_path, "pass", violations)
+    with (
+        Rig(HilOptions()) as rig,
+        contextlib.closing(UdpPort(0)) as port,
+        pytest.raises(typer.Exit) as ended,
+    ):
+        _serve(rig, rig.json_bridge(port), itertools.repeat(False), Course(together=other))
+    assert ended.value.exit_code == code

@@ -139,6 +139,7 @@ def test_a_port_that_is_taken_is_a_failed_link():
         (("px4", "--set", "launch.speed=-3"), ["launch.speed", "[1, 100]"]),
         (("px4", "--serial", "/dev/nothing"), ["--serial", "DEVICE:BAUD"]),
         (("px4", "--serial", "x:1", "--mission-link", "tcp"), ["--mission-link", "'tcp'"]),
+        (("px4", "--mission-link", "udp://127.0.0.1:14550"), ["--mission-link", "only with --serial"]),
     ],
 )
 def test_bad_input_is_one_message_and_exit_code_2(arguments, words):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
+import socket
 from datetime import UTC, datetime
 
 import numpy as np
@@ -16,7 +18,7 @@ from offboard.hil.errors import LinkLost, OptionError
 from offboard.hil.framing import Framer
 from offboard.hil.geodesy import Geodesy
 from offboard.hil.magnetic import MagneticField
-from offboard.hil.pipes import TcpServer, parse_links
+from offboard.hil.pipes import TcpServer, UdpLinks, parse_links
 from offboard.hil.plant import Axes, Phase
 from offboard.hil.px4_bridge import Px4Bridge
 from offboard.hil.px4_protocol import Px4Link
@@ -177,6 +179,15 @@ def test_a_port_that_is_taken_is_said():
     with pytest.raises(LinkError, match=f"TCP port {server.port}"):
         TcpServer(server.port)
     server.close()
+
+
+def test_a_flood_does_not_hold_up_the_steps():
+    with contextlib.closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as peer, UdpLinks([]) as links:
+        port = links._socket.getsockname()[1]
+        for _ in range(100):
+            peer.sendto(b"x", ("127.0.0.1", port))
+        read = [len(links.receive()) for _ in range(3)]
+    assert read == [64, 36, 0]
 
 
 def test_mission_links():
