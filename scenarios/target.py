@@ -12,12 +12,14 @@ from scenarios.scenario import Scenario
 
 MARKS_OF_A_RUN = ("summary.json", "track.csv", "scenario.toml")
 """A directory with these files is a previous run."""
+FILES_OF_A_PLANT = ("plant-track.csv", "plant-events.jsonl", "plant-summary.json")
+"""What a plant in the loop adds to the run of the autopilot that flew it."""
 FILES_OF_A_RUN = frozenset(
     (
         *MARKS_OF_A_RUN,
         *("obstacles.csv", "traffic.csv", "waypoints.csv", "decisions.jsonl", "run.json", "mission.plan"),
         "report.html",
-        *("plant-track.csv", "plant-events.jsonl", "plant-summary.json"),  # of a plant in the loop
+        *FILES_OF_A_PLANT,
     )
 )
 """A previous run with nothing else beside it may be replaced."""
