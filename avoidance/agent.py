@@ -98,6 +98,8 @@ class Agent:
         self._version = 0
         self._holding = False
         self._retry_at = -math.inf
+        self._rest_version = -1
+        self._rest_route: Route | None = None
 
     def decide(self, own: Ownship, route: Route, scan: RadarScan) -> Decision:
         """Decide about one scan.
@@ -127,13 +129,24 @@ class Agent:
         self._replacements.learn(route)
         known = known_obstacles(picture, own, route, self._performance, self._parameters)
         known = within_fence(known, self._geofence, own, self._parameters)
-        decision = self._decide(own, route, known)
+        at_rest = self._rest_version == picture.version and self._rest_route is route
+        watching = traffic and at_rest and not self._holding
+        decision = self._watch(own, route, known) if watching else self._decide(own, route, known)
         self._second_thoughts.learn(decision, known)
+        if decision is CLEAR:
+            self._rest_version, self._rest_route = picture.version, route
         if isinstance(decision, Keep | Hold):
             self._checked_route, self._checked = route, picture.version
         if decision.route is not None:
             self._holding = False  # a new route ends a hold
         return decision
+
+    def _watch(self, own: Ownship, route: Route, known: Known) -> Decision:
+        """As `_decide` where nothing has changed of what stands still and of the route: traffic alone."""
+        blocked = first_conflict(own, route, known, self._performance)
+        if blocked is None:
+            return self._resume(own, route, known)
+        return self._avoid(own, route, keep_what_can_be_kept(known, own, self._performance), blocked)
 
     def _decide(self, own: Ownship, route: Route, known: Known) -> Decision:
         self._retry_at = math.inf
@@ -227,9 +240,10 @@ class Agent:
         self._retry_at = own.time  # ask again at the next scan, whether or not anything new is seen
         ahead = next(i for i, w in enumerate(route.waypoints) if w.item is not None)
         straight = Route(Waypoint(own.north, own.east, own.altitude), route.waypoints[ahead:])
+        if ahead == 0 or not self._traffic.allows(own, straight, known, self._avoiding):
+            return CLEAR
         blocked = first_blocked_leg(own, straight, known, self._performance, slack=0.0)
-        blocked = blocked or first_trap(own, straight, known, self._performance, self._parameters)
-        if ahead == 0 or blocked or not self._traffic.allows(own, straight, known, self._avoiding):
+        if blocked or first_trap(own, straight, known, self._performance, self._parameters):
             return CLEAR
         who = obstacles(tuple(sorted(self._avoiding)))
         self._avoiding = frozenset()

@@ -8,19 +8,19 @@ from dataclasses import replace
 import numpy as np
 
 from avoidance.known import Known
-from avoidance.prediction import Intruders, ground_speeds, leg_approaches
+from avoidance.prediction import CONFLICT_HORIZON, DETOUR_HORIZON, Intruders, ground_speeds, leg_approaches
 from avoidance.right_of_way import gives_way
 from avoidance.route_check import Blocked
 from avoidance.types import Bools, Floats, Ownship, Performance, Route, Threat
 
-INTRUDER_HORIZON = 900.0
-"""Intruders are extrapolated no further than this [s]."""
 HASTE = 60.0
 """A conflict sooner than this does not wait until more is known [s]."""
 PATIENCE = 20.0
 """Whoever has flown straight on for a second is expected to do so for this many [s]."""
 STAND_ON = 10.0
 """The same for whoever is to give way to the own vehicle: it is given time to do so [s]."""
+STAND_ON_HORIZON = 650.0
+"""A closest approach to one of those later than this is no conflict yet [s]."""
 WIND_DOUBT = 2.0
 """A wind estimate stronger than the bound by more than this is not believed [m/s]."""
 
@@ -64,10 +64,10 @@ def first_conflict(
     doubt = intruders.doubt(times)
     wanted = intruders.radii + intruders.margin
     limit = wanted + doubt if resuming else np.maximum(wanted - 0.5 * intruders.margin - doubt, 0.0)
-    close = (separation < limit)[0]
+    close = ((separation < limit) & (times < CONFLICT_HORIZON))[0]
     if not resuming:
-        missing = (wanted + doubt - separation)[0]
-        close &= ~_can_wait(intruders, missing, times[0], doubt[0], _patience(own, intruders))
+        missing, yields = (wanted + doubt - separation)[0], _yields(own, intruders)
+        close &= ~_learning(intruders, missing, times[0], doubt[0]) & ~_young(intruders, times[0], yields)
     if not close.any():
         return None
     leg = int(np.argmax(close.any(axis=1)))
@@ -93,7 +93,7 @@ def _approaches(
     """As `leg_approaches`, of the route as far as intruders are extrapolated, shape (1, k - 1, q)."""
     points = _within_horizon(own, route, performance.airspeed)
     speeds = ground_speeds(np.diff(points, axis=1), performance.airspeed, wind_estimate(own, performance))
-    return leg_approaches(points, speeds, intruders, INTRUDER_HORIZON)
+    return leg_approaches(points, speeds, intruders)
 
 
 def to_be_avoided(own: Ownship, route: Route, known: Known, performance: Performance) -> Known:
@@ -103,30 +103,39 @@ def to_be_avoided(own: Ownship, route: Route, known: Known, performance: Perform
         return known
     separation, times = _approaches(own, route, performance, intruders)
     when = np.take_along_axis(times[0], separation[0].argmin(axis=0)[None], axis=0)[0]
-    patience = _patience(own, intruders)
-    waits = (patience < PATIENCE) & (when > HASTE) & (when > patience * np.maximum(intruders.ages, 1.0))
+    yields = _yields(own, intruders)
+    waits = ~yields & _young(intruders, when, yields)
     if not waits.any():
         return known
     return replace(known, intruder_ids=known.intruder_ids[~waits], intruders=intruders.chosen(~waits))
 
 
-def _patience(own: Ownship, intruders: Intruders) -> Floats:
-    yields = gives_way(own.course, (own.north, own.east), intruders)
-    return np.where(yields, PATIENCE, STAND_ON)
+def _yields(own: Ownship, intruders: Intruders) -> Bools:
+    return gives_way(own.course, (own.north, own.east), intruders)
 
 
-def _can_wait(intruders: Intruders, missing: Floats, times: Floats, doubt: Floats, patience: Floats) -> Bools:
+def _young(intruders: Intruders, times: Floats, yields: Bools) -> Bools:
+    """True where a closest approach is too far off to be sure that it will come to that, shape (..., q).
+
+    Whoever has turned a moment ago may turn back: a velocity is trusted for so long, in proportion, as it has
+    been kept. And who is to give way to the own vehicle must be left the time to do so.
+    """
+    trusted = np.where(yields, PATIENCE, STAND_ON) * np.maximum(intruders.ages, 1.0)
+    until = np.where(yields, CONFLICT_HORIZON, STAND_ON_HORIZON)
+    return np.asarray((times > HASTE) & (times > np.minimum(trusted, until)))
+
+
+def _learning(intruders: Intruders, missing: Floats, times: Floats, doubt: Floats) -> Bools:
     """True where it pays to know more before a conflict is acted on; all of shape (k - 1, q).
 
     Notes
     -----
     A detour grows with (what is missing)²/(time left), so waiting costs 1/time left a second; the doubt about
-    a velocity falls with time^-1.5, so it saves up to 3 doubt/(age x missing). And whoever has turned a
-    moment ago may turn back: a velocity is trusted for so long, in proportion, as it has been kept.
+    a velocity falls with time^-1.5, so it saves up to 3 doubt/(age x missing).
     """
     ages = np.maximum(intruders.ages, 1.0)
-    learning = doubt > np.maximum(intruders.margin, missing * ages / (3.0 * np.maximum(times, 1.0)))
-    return np.asarray((times > HASTE) & (learning | (times > patience * ages)))
+    worth = missing * ages / (3.0 * np.maximum(times, 1.0))
+    return np.asarray((times > HASTE) & (doubt > np.maximum(intruders.margin, worth)))
 
 
 def _within_horizon(own: Ownship, route: Route, airspeed: float) -> Floats:
@@ -136,6 +145,6 @@ def _within_horizon(own: Ownship, route: Route, airspeed: float) -> Floats:
     for waypoint in route.waypoints:
         points.append((waypoint.north, waypoint.east))
         ahead += math.dist(points[-2], points[-1])
-        if ahead > 2.0 * airspeed * INTRUDER_HORIZON:  # downwind it gets no further
+        if ahead > 2.0 * airspeed * DETOUR_HORIZON:  # downwind it gets no further
             break
     return np.array(points)[None]

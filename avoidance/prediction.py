@@ -11,6 +11,10 @@ from avoidance.types import Bools, Floats
 
 LARGEST_DOUBT = 400.0
 """An uncertain prediction adds no more than this to what is kept [m]."""
+CONFLICT_HORIZON = 800.0
+"""A closest approach later than this is no conflict yet [s]."""
+DETOUR_HORIZON = 1000.0
+"""A detour keeps its distance from all that come nearest before this [s]."""
 LEVEL_FLIGHT = 1e-6
 """A climb rate below this is none [m/s]."""
 
@@ -183,6 +187,7 @@ def separation_shortfall(points: Floats, speeds: Floats | float, intruders: Intr
     """
     separation, times = leg_approaches(points, speeds, intruders)
     missing = intruders.radii + intruders.margin + intruders.doubt(times) - separation
+    missing = np.where(times < DETOUR_HORIZON, missing, 0.0)
     return np.asarray(np.maximum(missing.max(axis=(1, 2)), 0.0))
 
 

@@ -16,7 +16,7 @@ from tests.avoidance.worlds import intruders, problem
 TARGET = (40_000.0, 0.0)
 GATES = intruders(  # two lines abreast that close the way ahead, the second where the first is open
     *((9000.0, float(east), -15.0, 0.0) for east in range(-12_000, 1, 2000)),
-    *((28_000.0, float(east), -15.0, 0.0) for east in range(-1000, 12_001, 2000)),
+    *((20_000.0, float(east), -15.0, 0.0) for east in range(-1000, 12_001, 2000)),
 )
 
 
