@@ -269,18 +269,21 @@ def _fly_and_write(
 
 @contextlib.contextmanager
 def stop_on_interrupt() -> Iterator[list[int]]:
-    """The first Ctrl-C only notes that it came (the list is then not empty), the second one stops hard."""
+    """The first Ctrl-C or SIGTERM only notes that it came (the list is then not empty), the next stops hard."""
     stop: list[int] = []
+    both = (signal.SIGINT, signal.SIGTERM)
 
     def note(number: int, frame: FrameType | None) -> None:  # noqa: ARG001
         stop.append(number)
-        signal.signal(signal.SIGINT, signal.default_int_handler)
+        for each in both:
+            signal.signal(each, signal.default_int_handler)
 
-    before = signal.signal(signal.SIGINT, note)
+    before = [signal.signal(each, note) for each in both]
     try:
         yield stop
     finally:
-        signal.signal(signal.SIGINT, before)
+        for each, handler in zip(both, before, strict=True):
+            signal.signal(each, handler)
 
 
 if __name__ == "__main__":
