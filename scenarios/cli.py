@@ -269,7 +269,7 @@ def _fly_and_write(
 
 @contextlib.contextmanager
 def stop_on_interrupt() -> Iterator[list[int]]:
-    """The first Ctrl-C or SIGTERM only notes that it came (the list is then not empty), the next stops hard."""
+    """The first Ctrl-C or SIGTERM is only noted (the list is not empty then), the next stops hard."""
     stop: list[int] = []
     both = (signal.SIGINT, signal.SIGTERM)
 
