@@ -109,7 +109,8 @@ def first_trap(
     Returns
     -------
     Blocked or None
-        The leg on which the stretch begins, and what makes it narrow; None if there is always an orbit.
+        The leg on which the stretch becomes too long, and what makes it narrow; None if there is always an
+        orbit.
 
     Notes
     -----
@@ -126,19 +127,18 @@ def first_trap(
     corners = _corner_room(points, own.course, performance)
     lengths = np.hypot(*np.diff(points, axis=0).T)
     reached = np.concatenate([[0.0], np.cumsum(lengths)])
-    run, begin, last = 0.0, 0, -math.inf
-    for band, legs in altitude_bands(own, route).items():
-        circles = known.circles(*band)
-        for leg in legs:
-            for k in [leg + inserted] if leg else range(inserted + 1):
-                at, rows = _narrow(points[k : k + 2], corners[k], circles, known.walls, performance)
-                for s, walls in zip((at + reached[k]).tolist(), rows.tolist(), strict=True):
-                    run = run + (s - last) if s - last < 2.0 * SPACING else 0.0
-                    begin = begin if run > 0.0 else leg
-                    last = s
-                    if run > longest:
-                        rows = np.unique([circles.rows[w] for w in walls if w >= 0]).astype(np.int64)
-                        return _blocked(known, rows, begin, s - run, own, turning_room(performance))
+    bands = {leg: band for band, legs in altitude_bands(own, route).items() for leg in legs}
+    run, last = 0.0, -math.inf
+    for k in range(len(points) - 1):
+        leg = max(k - inserted, 0)
+        circles = known.circles(*bands[leg])
+        at, rows = _narrow(points[k : k + 2], corners[k], circles, known.walls, performance)
+        for s, walls in zip((at + reached[k]).tolist(), rows.tolist(), strict=True):
+            run = run + (s - last) if s - last < 2.0 * SPACING else 0.0
+            last = s
+            if run > longest:
+                found = np.unique([circles.rows[w] for w in walls if w >= 0]).astype(np.int64)
+                return _blocked(known, found, leg, s - run, own, turning_room(performance))
     return None
 
 
