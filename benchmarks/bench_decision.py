@@ -12,6 +12,8 @@ import numpy as np
 
 from avoidance import Contact, Ownship, Performance, RadarScan, Route, Waypoint
 from avoidance.agent import Agent
+from avoidance.constraints import feasible_segments
+from avoidance.flown import flown_segments
 
 WORLDS = 60
 PERFORMANCE = Performance(
@@ -54,8 +56,49 @@ def decision_ms(seed: int, obstacles: int, *, overlapping: bool = False) -> floa
     return spent
 
 
+def scan_ms(obstacles: int, intruders: int) -> float:
+    """Median time of a scan without a threat [ms]: obstacles beside the route, traffic behind."""
+    rng = np.random.default_rng(0)
+    standing = [
+        Contact(
+            k,
+            float(rng.uniform(0.0, 10_000.0)),
+            float(rng.choice((-1, 1)) * rng.uniform(2500.0, 6000.0)),
+            200.0,
+        )
+        for k in range(obstacles)
+    ]
+    agent = Agent(PERFORMANCE, rng=rng)
+    route = Route(Waypoint(0.0, 0.0, 200.0), (Waypoint(40_000.0, 0.0, 200.0, item=0),))
+    times = []
+    for second in range(100):
+        own = Ownship(float(second), 15.0 * second, 0.0, 200.0, 15.0, 0.0, airspeed=15.0)
+        moving = [
+            Contact(1000 + k, -4000.0 - 500.0 * k - 10.0 * second, 3000.0, 200.0) for k in range(intruders)
+        ]
+        scan = RadarScan.of(float(second), standing + moving)
+        begun = time.perf_counter()
+        agent.decide(own, route, scan)
+        times.append(1000.0 * (time.perf_counter() - begun))
+    return float(np.median(times))
+
+
+def bare_test_ms(obstacles: int) -> float:
+    """Median time of the bare vectorised test of a route against obstacles [ms]: the yardstick of a scan."""
+    rng = np.random.default_rng(0)
+    centres = rng.uniform(-6000.0, 10_000.0, (obstacles, 2))
+    points = np.array([[[0.0, 0.0], [40_000.0, 0.0]]])
+    times = []
+    for _ in range(200):
+        begun = time.perf_counter()
+        starts, ends, extra = flown_segments(points, 0.0, PERFORMANCE)
+        feasible_segments(starts, ends, extra, centres, np.full(obstacles, 1050.0))
+        times.append(1000.0 * (time.perf_counter() - begun))
+    return float(np.median(times))
+
+
 def main() -> None:
-    """Print the table."""
+    """Print the tables."""
     decision_ms(0, 5)  # imports and caches
     print("| obstacles known | median [ms] | p99 [ms] |")
     print("|---|---|---|")
@@ -64,6 +107,12 @@ def main() -> None:
         print(f"| {count} | {np.median(times):.1f} | {np.percentile(times, 99):.1f} |")
     times = [decision_ms(seed, 140, overlapping=True) for seed in range(WORLDS)]
     print(f"| 140 overlapping | {np.median(times):.1f} | {np.percentile(times, 99):.1f} |")
+    print()
+    print("| scan without a threat | median [ms] |")
+    print("|---|---|")
+    print(f"| bare test of the route against 100 obstacles | {bare_test_ms(100):.2f} |")
+    for obstacles, intruders in ((100, 0), (0, 1), (0, 8), (100, 1), (100, 8)):
+        print(f"| {obstacles} known, {intruders} moving | {scan_ms(obstacles, intruders):.2f} |")
 
 
 if __name__ == "__main__":

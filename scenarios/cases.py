@@ -111,6 +111,10 @@ def _moving(count: int, rng: np.random.Generator, fidelity: Fidelity) -> Scenari
     return encounter(rng, load(FIELD).home, intruders=count, aircraft=fidelity == "6dof")
 
 
+def _turning(count: int, rng: np.random.Generator, fidelity: Fidelity) -> Scenario:
+    return encounter(rng, load(FIELD).home, intruders=count, aircraft=fidelity == "6dof", turning=True)
+
+
 def _noise(count: int, rng: np.random.Generator, fidelity: Fidelity) -> Scenario:
     return replace(_moving(count, rng, fidelity), radar=NOISE)
 
@@ -119,6 +123,9 @@ KINDS: dict[str, Kind] = {
     "static": Kind(0, "obstacles of 1 km scattered about the waypoints", False, (10, 40, 70, 100), _static),
     "moving": Kind(1, "intruders at constant velocity, each would pass within 1 km", True, (1,), _moving),
     "mixed": Kind(2, "obstacles of 0.3 to 2 km, 8 m/s of gusty wind", False, (10, 40, 70, 100), _mixed),
+    "turning": Kind(
+        4, "intruders that turn on to a course that would pass within 1 km", True, (1,), _turning
+    ),
     "noise": Kind(3, "intruders seen by a radar with noise and missed scans", True, (1,), _noise),
 }
 """Kinds of worlds by name."""

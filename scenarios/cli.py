@@ -184,7 +184,7 @@ def replay(
 def stress(
     *,
     kind: Annotated[
-        str, typer.Option(help="static or mixed (random fields), moving or noise (encounters with traffic).")
+        str, typer.Option(help="static or mixed (random fields), moving, turning or noise (traffic).")
     ] = "static",
     obstacles: Annotated[
         str | None,

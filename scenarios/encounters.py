@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,6 +24,12 @@ FIRST_SEEN_ONE, FIRST_SEEN_SEVERAL = 8_000.0, 10_000.0
 """An intruder is first seen no nearer than this, alone or as one of several [m]."""
 AIRCRAFT_SPEEDS = (12.0, 22.0)
 """Intruders of these speeds can be flown by the aircraft model [m/s]."""
+TURNS = (0.2, 0.7)
+"""An intruder that turns does so between these parts of the time until it is nearest."""
+LARGEST_TURN = math.pi / 2.0
+"""It turns by no more than this [rad]."""
+TURNS_FROM = 3_000.0
+"""It is no nearer than this then [m]."""
 RUN_OUT = 20_000.0
 """An intruder flies on for so far after the own vehicle's time limit [m]."""
 
@@ -44,16 +50,32 @@ class Intruder:
     """Time of closest approach if nobody gives way [s]."""
     miss: float
     """Distance then [m]."""
+    turns: tuple[float, float] | None = None
+    """Time of a turn on to this course [s], and by how much it turns [rad]; None if it flies straight."""
 
     @property
     def speed(self) -> float:
         """Over ground [m/s]."""
         return math.hypot(self.velocity_north, self.velocity_east)
 
+    def at(self, time: float) -> tuple[float, float]:
+        """North and east at a time of the straight flight [m]."""
+        return self.north + time * self.velocity_north, self.east + time * self.velocity_east
+
+    @property
+    def start(self) -> tuple[float, float]:
+        """North and east at the start, before any turn [m]."""
+        if self.turns is None:
+            return self.north, self.east
+        time, angle = self.turns
+        north, east = self.at(time)
+        course = math.atan2(self.velocity_east, self.velocity_north) - angle
+        return north - time * self.speed * math.cos(course), east - time * self.speed * math.sin(course)
+
     @property
     def start_distance(self) -> float:
         """From the own vehicle at the start [m]."""
-        return math.hypot(self.north, self.east)
+        return math.hypot(*self.start)
 
 
 def draw_intruder(rng: np.random.Generator, first_seen: float) -> Intruder:
@@ -95,8 +117,25 @@ def draw_intruder(rng: np.random.Generator, first_seen: float) -> Intruder:
         )
 
 
+def draw_turning(rng: np.random.Generator, first_seen: float) -> Intruder:
+    """One that turns on to its course while it is watched; arguments as of `draw_intruder`."""
+    while True:
+        straight = draw_intruder(rng, first_seen)
+        time = rng.uniform(*TURNS) * straight.passes_at
+        turning = replace(straight, turns=(time, rng.uniform(-LARGEST_TURN, LARGEST_TURN)))
+        north, east = straight.at(time)
+        distance = math.hypot(north - AIRSPEED * time, east)
+        if turning.start_distance >= first_seen and distance >= TURNS_FROM:
+            return turning
+
+
 def encounter(
-    rng: np.random.Generator, home: Home, *, intruders: int = 1, aircraft: bool = False
+    rng: np.random.Generator,
+    home: Home,
+    *,
+    intruders: int = 1,
+    aircraft: bool = False,
+    turning: bool = False,
 ) -> Scenario:
     """One leg of 20 km and the intruders that would pass within 1 km of whoever flies straight along it.
 
@@ -110,6 +149,8 @@ def encounter(
         How many.
     aircraft : bool
         True flies those between 12 and 22 m/s on the aircraft model; the others are points.
+    turning : bool
+        True lets each turn on to its course on the way.
 
     Returns
     -------
@@ -117,7 +158,8 @@ def encounter(
         With a perfect radar.
     """
     first_seen = FIRST_SEEN_ONE if intruders == 1 else FIRST_SEEN_SEVERAL
-    drawn = [draw_intruder(rng, first_seen) for _ in range(intruders)]
+    draw = draw_turning if turning else draw_intruder
+    drawn = [draw(rng, first_seen) for _ in range(intruders)]
     mission = (Point(0.0, 0.0, ALTITUDE), Point(LEG, 0.0, ALTITUDE))
     return Scenario(
         name="encounter",
@@ -135,22 +177,23 @@ def describe(intruders: Sequence[Intruder]) -> str:
 
 
 def _words(intruder: Intruder) -> str:
-    bearing = math.degrees(math.atan2(intruder.east, intruder.north))
+    bearing = math.degrees(math.atan2(*reversed(intruder.start)))
     side = "right" if bearing >= 0.0 else "left"
+    turn = ""
+    if intruder.turns is not None:
+        turn = f", turns by {math.degrees(intruder.turns[1]):.0f} deg after {intruder.turns[0]:.0f} s"
     return (
-        f"{intruder.speed:.1f} m/s from {abs(bearing):.0f} deg {side}, would pass at {intruder.miss:.0f} m "
-        f"after {intruder.passes_at:.0f} s"
+        f"{intruder.speed:.1f} m/s from {abs(bearing):.0f} deg {side}{turn}, would pass at "
+        f"{intruder.miss:.0f} m after {intruder.passes_at:.0f} s"
     )
 
 
 def _traffic(identity: int, intruder: Intruder, aircraft: bool) -> Traffic:
     lasts = 2.0 * LEG / AIRSPEED + RUN_OUT / intruder.speed
-    begin = Point(round(intruder.north, 3), round(intruder.east, 3), ALTITUDE)
-    end = Point(
-        round(intruder.north + lasts * intruder.velocity_north, 3),
-        round(intruder.east + lasts * intruder.velocity_east, 3),
-        ALTITUDE,
-    )
+    corners = [intruder.start, intruder.at(lasts)]
+    if intruder.turns is not None:
+        corners.insert(1, intruder.at(intruder.turns[0]))
+    points = tuple(Point(round(north, 3), round(east, 3), ALTITUDE) for north, east in corners)
     low, high = AIRCRAFT_SPEEDS
     motion: Motion = "6dof" if aircraft and low <= intruder.speed <= high else "point"
-    return Traffic(identity, (begin, end), speed=intruder.speed, motion=motion)
+    return Traffic(identity, points, speed=intruder.speed, motion=motion)

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scenarios.encounters import AIRSPEED, FIRST_SEEN_SEVERAL, LEG, draw_intruder, encounter
+from scenarios.encounters import AIRSPEED, FIRST_SEEN_SEVERAL, LEG, draw_intruder, draw_turning, encounter
 from scenarios.scenario import Home, Obstacle
 
 HOME = Home(14.39, 76.60, 600.0)
@@ -64,3 +64,25 @@ def test_intruders_that_an_aircraft_can_fly_are_aircraft(aircraft, motions):
     assert {flight.motion for flight in flights} == motions
     assert all(12.0 <= flight.speed <= 22.0 for flight in flights if flight.motion == "6dof")
     assert not any(isinstance(flight, Obstacle) for flight in flights)
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_one_that_turns_is_seen_from_afar_and_then_flies_the_same_encounter(seed):
+    drawn = draw_turning(np.random.default_rng(seed), 8000.0)
+    assert drawn.turns is not None
+    when, angle = drawn.turns
+    assert math.hypot(*drawn.start) >= 8000.0
+    assert 0.2 * drawn.passes_at <= when <= 0.7 * drawn.passes_at
+    north, east = drawn.at(drawn.passes_at)
+    assert math.hypot(north - AIRSPEED * drawn.passes_at, east) == pytest.approx(drawn.miss, abs=1e-6)
+    corner = np.array(drawn.at(when))
+    before = (corner - drawn.start) / when
+    after = np.array([drawn.velocity_north, drawn.velocity_east])
+    assert np.hypot(*before) == pytest.approx(np.hypot(*after))
+    turned = math.atan2(before[0] * after[1] - before[1] * after[0], before @ after)
+    assert turned == pytest.approx(angle, abs=1e-6)
+
+
+def test_the_file_of_one_that_turns_has_the_corner():
+    (flight,) = encounter(np.random.default_rng(2), HOME, turning=True).traffic
+    assert len(flight.waypoints) == 3
