@@ -65,7 +65,7 @@ def first_conflict(
     wanted = intruders.radii + intruders.margin
     limit = wanted + doubt if resuming else np.maximum(wanted - 0.5 * intruders.margin - doubt, 0.0)
     close = ((separation < limit) & (times < CONFLICT_HORIZON))[0]
-    if not resuming:
+    if not resuming and close.any():
         missing, yields = (wanted + doubt - separation)[0], _yields(own, intruders)
         close &= ~_learning(intruders, missing, times[0], doubt[0]) & ~_young(intruders, times[0], yields)
     if not close.any():

@@ -115,6 +115,8 @@ def begin(ids: Ints, positions: Floats, radii: Floats, noise: Floats, time: floa
 
 def predict(tracks: Tracks, rows: Ints, time: float) -> None:
     """Extrapolate the tracks `rows` to a time [s]."""
+    if not len(rows):
+        return
     step = time - tracks.time[rows]
     long = step[:, None, None]
     state, covariance = tracks.state[rows], tracks.covariance[rows]
