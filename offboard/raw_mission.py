@@ -129,7 +129,18 @@ class RawMission:
         return any(item.command in LANDINGS for item in self.items)
 
     def plan(self, home_altitude: float) -> MissionPlan:
-        """Its waypoints as MAVSDK's items; altitudes [m] above a home at `home_altitude` [m]."""
+        """Its waypoints as MAVSDK's items; altitudes [m] above a home at `home_altitude` [m].
+
+        Raises
+        ------
+        LinkError
+            If the altitude of one is neither above the sea nor above home: heights of the ground are not
+            known here, and a detour at the wrong height is none.
+        """
+        for index in self.flown_to:
+            if self.items[index].frame not in ABSOLUTE | RELATIVE:
+                words = "must be above mean sea level (0, 5) or above home (3, 6)"
+                raise LinkError(f"item {index}: altitude in MAV_FRAME {self.items[index].frame}; it {words}")
         return MissionPlan.of(
             [
                 replace(_item(self.items[index], home_altitude), speed_m_s=self._speed_after(number))

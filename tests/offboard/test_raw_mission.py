@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from avoidance import Waypoint
@@ -82,3 +84,10 @@ def test_a_circle_at_the_last_waypoint_is_no_waypoint():
 def test_a_mission_that_leads_nowhere_is_refused():
     with pytest.raises(LinkError, match="no item to fly to"):
         RawMission.of([do(178, 0, 18)])
+
+
+@pytest.mark.parametrize("frame", [10, 11, 1])
+def test_heights_above_the_ground_are_refused_with_the_item(frame):
+    mission = RawMission.of([at(0), replace(at(5000), frame=frame)])
+    with pytest.raises(LinkError, match=f"item 1: altitude in MAV_FRAME {frame}"):
+        mission.plan(600.0)
