@@ -51,6 +51,10 @@ def offboard(
         typer.Option(min=0.0, help="Largest steady wind to allow for [m/s]; the scenario's, or 3."),
     ] = None,
     timeout: Annotated[float, typer.Option(min=0.1, help="Wait so long for a vehicle [s].")] = 60.0,
+    signing_key: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Sign all frames and drop what is not signed (MAVLink 2 signing)."),
+    ] = None,
     output: Annotated[
         Path | None,
         typer.Option("-o", "--output", metavar="DIR", help="Where the run is written (else sidestep-runs)."),
@@ -65,11 +69,13 @@ def offboard(
     Exit codes: 0 flown safely; 1 a safety sphere was entered or the mission not completed; 2 bad input;
     3 no vehicle, or the link lost for good; 130 interrupted.
     """
+    from offboard.signing import load_key  # noqa: PLC0415
     from scenarios import run  # noqa: PLC0415
     from scenarios.live_mission import mission_of, source_of  # noqa: PLC0415
     from scenarios.target import check_target, free_directory  # noqa: PLC0415
 
     with expected_errors():
+        key = None if signing_key is None else load_key(signing_key)
         wanted = mission_of(mission)
         known = wanted.scenario
         parameters = run.preset(preset or (known.preset if known is not None else "default"))
@@ -87,6 +93,7 @@ def offboard(
             directory,
             wind_bound=bound,
             timeout=timeout,
+            key=key,
             touch=not dry_run,
             arm=arm,
             as_json=as_json,
@@ -103,6 +110,7 @@ def _connect_and_fly(
     *,
     wind_bound: float,
     timeout: float,
+    key: bytes | None,
     touch: bool,
     arm: bool,
     as_json: bool,
@@ -113,7 +121,7 @@ def _connect_and_fly(
     from scenarios.live_show import say  # noqa: PLC0415
 
     say(f"Waiting for a vehicle on {url} (up to {timeout:g} s) ...")
-    session = connect(url, timeout)
+    session = connect(url, timeout, key)
     with contextlib.closing(session):
         vehicle = open_vehicle(session, wanted.frame, wind_bound=wind_bound, touch=touch)
         return fly(vehicle, wanted, source, parameters, directory, arm=arm, as_json=as_json)

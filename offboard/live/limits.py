@@ -99,4 +99,4 @@ def _first(session: Session, names: tuple[Named, ...], allowed: tuple[float, flo
             raise LinkError(f"the vehicle's {named.name} = {value:g}, must be between {low:g} and {high:g}")
         return value * named.scale
     known = " nor ".join(named.name for named in names)
-    raise LinkError(f"the vehicle does not tell its {known}")
+    raise LinkError(f"the vehicle does not tell its {known}; if it signs its frames, it needs --signing-key")

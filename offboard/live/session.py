@@ -16,6 +16,8 @@ from offboard.raw_mission import RawItem
 if TYPE_CHECKING:
     from mavsdk import Mavsdk, System
 
+    from offboard.live.relay import Relay
+
 MESSAGES = (
     "HEARTBEAT",
     "GLOBAL_POSITION_INT",
@@ -50,15 +52,18 @@ class MavsdkSession:
         MAVSDK with a connection; closed with the session.
     system : System
         The vehicle.
+    relay : Relay, optional
+        What carries its bytes, if MAVSDK does not do so itself; closed with the session.
     """
 
-    def __init__(self, mavsdk: Mavsdk, system: System) -> None:
+    def __init__(self, mavsdk: Mavsdk, system: System, relay: Relay | None = None) -> None:
         from mavsdk.plugins.action import Action  # noqa: PLC0415
         from mavsdk.plugins.mavlink_direct import MavlinkDirect  # noqa: PLC0415
         from mavsdk.plugins.mission_raw import MissionRaw  # noqa: PLC0415
         from mavsdk.plugins.param import Param  # noqa: PLC0415
 
         self._mavsdk = mavsdk
+        self._relay = relay
         self._system = system
         self._queue: queue.SimpleQueue[Message | Reply] = queue.SimpleQueue()
         self._tokens = count(1)
@@ -184,6 +189,8 @@ class MavsdkSession:
 
     def close(self) -> None:
         """End the connection and MAVSDK's threads."""
+        if self._relay is not None:
+            self._relay.close()
         self._mavsdk.destroy()
 
     def _on_message(self, message: Any, _: object) -> None:  # noqa: ANN401  (MAVSDK is untyped)
@@ -207,7 +214,7 @@ class MavsdkSession:
         return answer
 
 
-def connect(url: str, timeout: float = 30.0) -> MavsdkSession:
+def connect(url: str, timeout: float = 30.0, signing_key: bytes | None = None) -> MavsdkSession:
     """Connect to the first autopilot that is heard.
 
     Parameters
@@ -216,6 +223,8 @@ def connect(url: str, timeout: float = 30.0) -> MavsdkSession:
         As MAVSDK writes it: udpin://0.0.0.0:14540, tcpout://127.0.0.1:5760, serial:///dev/ttyUSB0:57600.
     timeout : float
         How long to wait for a heartbeat [s].
+    signing_key : bytes, optional
+        With a key of 32 bytes all frames are signed, and those that are not signed with it are dropped.
 
     Raises
     ------
@@ -225,19 +234,50 @@ def connect(url: str, timeout: float = 30.0) -> MavsdkSession:
         If it cannot be opened or nothing is heard; says what to look at.
     """
     mavsdk = quiet_mavsdk()
+    relay: Relay | None = None
+    try:
+        if signing_key is None:
+            _open(mavsdk, url)
+        else:
+            relay = _open_signed(mavsdk, url, signing_key)
+        system = mavsdk.first_autopilot(timeout)
+        if system is not None:
+            return MavsdkSession(mavsdk, system, relay)
+        raise LinkError(f"no autopilot was heard on {url} within {timeout:g} s{_why(relay)}")
+    except BaseException:
+        if relay is not None:
+            relay.close()
+        mavsdk.destroy()
+        raise
+
+
+def _open(mavsdk: Mavsdk, url: str) -> None:
     result = mavsdk.add_any_connection(url)
     if result.name != "SUCCESS":
-        mavsdk.destroy()
         kind = InputError if result.name == "CONNECTION_URL_INVALID" else LinkError
         raise kind(
             f"{url} cannot be opened ({result.name}); "
             "such as udpin://0.0.0.0:14540, tcpout://127.0.0.1:5760, serial:///dev/ttyUSB0:57600"
         )
-    system = mavsdk.first_autopilot(timeout)
-    if system is None:
-        mavsdk.destroy()
-        raise LinkError(f"no autopilot was heard on {url} within {timeout:g} s")
-    return MavsdkSession(mavsdk, system)
+
+
+def _open_signed(mavsdk: Mavsdk, url: str, key: bytes) -> Relay:
+    from offboard.live.relay import Relay  # noqa: PLC0415
+
+    mavsdk.add_any_connection("raw://")
+    relay = Relay(url, key, mavsdk.pass_received_raw_bytes)
+    mavsdk.subscribe_raw_bytes_to_be_sent(relay.send)
+    return relay
+
+
+def _why(relay: Relay | None) -> str:
+    """Why a signed link may be silent."""
+    if relay is None or relay.accepted or not relay.dropped:
+        return ""
+    return (
+        ": what comes is not signed with the key of --signing-key, or the vehicle's clock is more than a "
+        "minute behind ours"
+    )
 
 
 def quiet_mavsdk() -> Mavsdk:

@@ -53,6 +53,39 @@ def test_bad_input_is_one_message(arguments, words, tmp_path):
     assert "Traceback" not in result.output
 
 
+@pytest.mark.parametrize(
+    ("content", "url", "words"),
+    [
+        (None, "udpin://127.0.0.1:14540", "key.txt: the signing key cannot be read"),
+        ("\n", "udpin://127.0.0.1:14540", "key.txt: the signing key is empty; put 64 hexadecimal digits"),
+        ("secret", "tcpin://127.0.0.1:5760", "tcpin://127.0.0.1:5760 cannot be opened with a signing key"),
+    ],
+    ids=["no file", "empty", "url"],
+)
+def test_a_signing_key_or_a_url_that_cannot_be_used_is_one_line(content, url, words, tmp_path):
+    file = tmp_path / "key.txt"
+    if content is not None:
+        file.write_text(content)
+    arguments = [
+        "--connect",
+        url,
+        "--signing-key",
+        str(file),
+        "--timeout",
+        "0.1",
+        "-o",
+        str(tmp_path / "run"),
+    ]
+    result = CliRunner().invoke(app, ["offboard", *arguments])
+    assert result.exit_code == 2
+    said = [line for line in result.stderr.splitlines() if not line.startswith("Waiting for a vehicle")]
+    assert len(said) == 1
+    assert said[0].startswith("sidestep: ")
+    assert words in said[0]
+    assert result.stdout == ""
+    assert not (tmp_path / "run").exists()
+
+
 def test_a_vehicle_that_may_be_real_is_left_alone_until_somebody_says_yes(tmp_path):
     wanted = mission_of("single")
     with waiting() as (simulation, vehicle):
