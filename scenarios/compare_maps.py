@@ -39,7 +39,7 @@ def course_map(
     *,
     window: tuple[float, float, float, float] | None = None,
     waypoints: bool = True,
-    height: int = 500,
+    height: int = 520,
 ) -> Figure:
     """Flights through the same world over one another.
 
@@ -66,8 +66,8 @@ def course_map(
         if waypoints:
             traces += _put_in(record, colour if many else WAYPOINT, legend=not many)
     layout = layout_of("x, north of home [km]", "y, east of home [km]", height=height)
-    layout["legend"] |= {"y": -0.16, "yanchor": "top"}
-    layout["margin"] |= {"b": 110}
+    layout["legend"] |= {"y": -0.22, "yanchor": "top"}
+    layout["margin"] |= {"b": 130}
     if window is not None:
         x0, x1, y0, y1 = (value / 1e3 for value in window)
         layout["xaxis"] |= {"range": [x0, x1], "constrain": "range"}
