@@ -107,6 +107,7 @@ def self_test_json(found: SelfTest) -> dict[str, Any]:
         "steps_per_s": found.timing.steps / found.wall,
         "us_per_step": {part: 1e6 * s / found.timing.steps for part, s in found.timing.seconds.items()},
         "real_time": None if found.punctuality is None else punctuality_json(found.punctuality),
+        "stolen_s": found.stolen,
         "checks": [{"name": c.name, "passed": c.passed, "seen": c.seen} for c in found.checks],
     }
 
