@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from avoidance import Hold, Performance
+from avoidance.geofence import Walls
 from avoidance.known import ALTITUDE_TOLERANCE
 from avoidance.parameters import Parameters
 from avoidance.tangent_graph import shortest_path
@@ -17,12 +18,15 @@ from avoidance.types import Floats
 from offboard.frames import MapFrame
 from offboard.mission import MissionPlan
 from scenarios import __version__
-from scenarios.fence import breaches
+from scenarios.fence import FenceArea, Place, breaches, core_fence
 from scenarios.flown import Flown, FlownVehicle, LoggedDecision
 from scenarios.goals import Goal, ReplacementRule, discs, goals
 from scenarios.metrics import Separation, first_pass, nearest_pass, path_length, separations
 from scenarios.scenario import Obstacle, Point
 from scenarios.track import Track
+
+AT_POSTS = 0.01
+"""The shortest way keeps this from edges of the geofence, round whose corners it bends [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +131,7 @@ def score_vehicle(flown: Flown, vehicle: FlownVehicle) -> VehicleScore:
     """Judge what one own vehicle did."""
     obstacles = flown.scenario.obstacles
     rule = replacement_rule(flown.parameters, vehicle.performance)
-    targets = goals(vehicle.mission, obstacles, rule)
+    targets = goals(vehicle.mission, obstacles, rule, flown.scenario.geofence)
     fates = waypoint_fates(vehicle.track, targets, vehicle.performance.acceptance_radius)
     approaches = separations(vehicle.track, obstacles, vehicle.others)
     names = {member.id for member in flown.scenario.vehicles}
@@ -136,7 +140,7 @@ def score_vehicle(flown: Flown, vehicle: FlownVehicle) -> VehicleScore:
         **approach_summary(approaches),
         "path_length_m": round(path_length(vehicle.track.positions), 3),
         "plan_length_m": round(plan_length(vehicle.plan, flown.frame), 3),
-        "optimum_length_m": optimum_length(vehicle.mission, targets, obstacles),
+        "optimum_length_m": optimum_length(vehicle.mission, targets, obstacles, flown.scenario.geofence),
         "flight_time_s": float(vehicle.track.times[-1]),
         "waypoints_replaced": replaced_waypoints(vehicle.decisions),
         "replans": sum(changes_route(entry) for entry in vehicle.decisions),
@@ -243,19 +247,26 @@ def plan_length(plan: MissionPlan, frame: MapFrame) -> float:
 
 
 def optimum_length(
-    mission: Sequence[Point], targets: Sequence[Goal], obstacles: Sequence[Obstacle]
+    mission: Sequence[Point],
+    targets: Sequence[Goal],
+    obstacles: Sequence[Obstacle],
+    fence: Sequence[FenceArea] = (),
 ) -> float | None:
-    """Length of the shortest way through all goals outside every sphere, leg by leg [m].
+    """Length of the shortest way through all goals outside every sphere and within the fence, leg by leg [m].
 
     With full knowledge and without a margin; spheres are cut at the altitude of each leg's end. None if
     there is no way.
     """
     total = 0.0
     here = (mission[0].north, mission[0].east)
+    edges = core_fence(fence)
+    posts = np.concatenate((edges.discs, np.column_stack((edges.posts, np.full(len(edges.posts), AT_POSTS)))))
     for goal in targets[1:]:
         if goal.point is None:
             continue
-        length = _leg_optimum(here, goal.point, *discs(obstacles, mission[goal.waypoint].altitude))
+        centres, radii = discs(obstacles, mission[goal.waypoint].altitude)
+        centres, radii = np.concatenate((centres, posts[:, :2])), np.concatenate((radii, posts[:, 2]))
+        length = _leg_optimum(here, goal.point, centres, radii, Walls(edges.walls, AT_POSTS))
         if length is None:
             return None
         total += length
@@ -263,13 +274,11 @@ def optimum_length(
     return round(total, 3)
 
 
-def _leg_optimum(
-    start: tuple[float, float], goal: tuple[float, float], centres: Floats, radii: Floats
-) -> float | None:
+def _leg_optimum(start: Place, goal: Place, centres: Floats, radii: Floats, walls: Walls) -> float | None:
     for end in (start, goal):  # a leg may begin inside a circle cut at the height of its end
         if (np.hypot(*(centres - end).T) < radii * (1.0 - 1e-9)).any():
             return None
-    path = shortest_path(start, goal, centres, radii)
+    path = shortest_path(start, goal, centres, radii, walls)
     return None if path is None else path.length
 
 

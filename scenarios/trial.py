@@ -16,7 +16,7 @@ from avoidance import Replace, Resume
 from avoidance.parameters import Parameters
 from scenarios.cases import KINDS, Case, scenario_of
 from scenarios.flown import Flown
-from scenarios.goals import discs, separated
+from scenarios.goals import barred_by_fence, discs
 from scenarios.hangar import Hangar
 from scenarios.metrics import path_length, separations
 from scenarios.run import Flight
@@ -24,6 +24,7 @@ from scenarios.scenario import Fidelity, Scenario
 from scenarios.score import Score, changes_route, replacement_rule, score
 from scenarios.track import Track
 from scenarios.volumes import NMAC, WELL_CLEAR, entered
+from scenarios.walled import Shapes, separated
 
 if TYPE_CHECKING:
     from fmu.library import FmuLibrary
@@ -167,11 +168,19 @@ def _outcome(case: Case, flown: Flown, judged: Score, **more: object) -> Outcome
 
 
 def feasible(flown: Flown) -> bool:
-    """True if the start is not walled in by spheres and margins (unbounded component of free space)."""
-    start = flown.scenario.mission[0]
+    """True if the field lets the vehicle go, and lets it stay within the geofence.
+
+    The start is not walled in by spheres and margins (unbounded component of free space), and no waypoint
+    with room to turn can be reached only by leaving the geofence.
+    """
+    scenario = flown.scenario
+    start = scenario.mission[0]
     rule = replacement_rule(flown.parameters, flown.performance)
-    centres, radii = discs(flown.scenario.obstacles, start.altitude)
-    return not separated((start.north, start.east), (-FAR_AWAY, -FAR_AWAY), centres, radii + rule.margin)
+    centres, radii = discs(scenario.obstacles, start.altitude)
+    walls = Shapes.discs(centres, radii + rule.margin)
+    if separated((start.north, start.east), (-FAR_AWAY, -FAR_AWAY), walls):
+        return False
+    return not barred_by_fence(scenario.mission, scenario.obstacles, rule, scenario.geofence)
 
 
 def _traffic_events(flown: Flown) -> Events:
