@@ -15,16 +15,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Self
 
-import numpy as np
-
 from offboard.frames import MapFrame
 from scenarios.hil_setup import HilOptions
+from scenarios.hil_truth import truth
 from scenarios.load import load
-from scenarios.metrics import separations
 from scenarios.run import prepare
 from scenarios.scenario import Scenario
 from scenarios.target import check_target, free_directory
-from scenarios.track import Track
 
 PREFIX = "plant-"
 """Names of the plant's files in the run directory begin with this."""
@@ -79,18 +76,8 @@ class Together:
         return subprocess.Popen(self.command)
 
     def truth(self, rows: Sequence[Sequence[Any]]) -> dict[str, Any]:
-        """Separation from what stands still, by the plant's own track (rows of `HilRecorder`)."""
-        if len(rows) < 2 or not self.scenario.obstacles:
-            return {"min_separation_m": None, "min_margin_m": None, "violations": None}
-        numbers = np.array([[float(row[0]), *map(float, row[2:5])] for row in rows])
-        blank = np.zeros(len(numbers))
-        track = Track("plant", numbers[:, 0], numbers[:, 1:4], blank, blank, blank)
-        found = separations(track, self.scenario.obstacles)
-        return {
-            "min_separation_m": round(min(each.distance for each in found), 3),
-            "min_margin_m": round(min(each.margin for each in found), 3),
-            "violations": sum(each.entries for each in found),
-        }
+        """Separation by the plant's own track (rows of `HilRecorder`), once the other process has written."""
+        return truth(self.scenario, rows, self.directory)
 
 
 def end(process: subprocess.Popen[bytes]) -> int:

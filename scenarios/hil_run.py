@@ -182,6 +182,7 @@ def _tell(summary: dict[str, Any], course: Course) -> None:
         typer.echo(
             f"by the plant's own track: nearest {summary['min_separation_m']:.1f} m, least margin "
             f"{summary['min_margin_m']:.1f} m, spheres entered {summary['violations']}"
+            + ("" if summary["judged"] == "all" else " (of what stands still alone)")
         )
     where = course.output if course.together is None else course.together.directory
     if where is not None and where.is_dir():

@@ -60,13 +60,17 @@ def test_the_plants_own_track_is_judged(tmp_path):
             truth = AT_REST._replace(time=begin + step, north=north, east=east, altitude=60.0)
             recorder(truth, Phase.FLYING, NEUTRAL)
     found = together(tmp_path).truth(recorder.rows[400:])
-    assert found == {"min_separation_m": 400.0, "min_margin_m": 200.0, "violations": 0}
+    clear = {"min_separation_m": 400.0, "min_margin_m": 200.0, "violations": 0}
+    assert found == clear | {"judged": "all", "clock_fit_m": None}
     found = together(tmp_path).truth(recorder.rows[:400])
-    assert found == {"min_separation_m": 100.0, "min_margin_m": -100.0, "violations": 1}
+    cut = {"min_separation_m": 100.0, "min_margin_m": -100.0, "violations": 1}
+    assert found == cut | {"judged": "all", "clock_fit_m": None}
 
 
 def test_without_a_track_nothing_is_claimed(tmp_path):
-    assert set(together(tmp_path).truth([]).values()) == {None}
+    found = together(tmp_path).truth([])
+    assert found.pop("judged") == "nothing"
+    assert set(found.values()) == {None}
 
 
 def test_the_plants_files_are_files_of_a_run(tmp_path):
@@ -128,7 +132,8 @@ class Other:
         return self.process
 
     def truth(self, rows):
-        return {"min_separation_m": 1.0, "min_margin_m": -1.0, "violations": self._violations}
+        found = {"min_separation_m": 1.0, "min_margin_m": -1.0, "violations": self._violations}
+        return found | {"judged": "all", "clock_fit_m": None}
 
 
 def test_nobody_is_left_behind_when_the_model_fails(tmp_path):

@@ -59,6 +59,8 @@ def test_a_mission_is_flown_round_an_obstacle_from_the_ground_up(tmp_path):
     assert run["completed"]
     assert run["replans"] >= 1
     assert run["violations"] == truth["violations"] == 0
+    assert truth["judged"] == "all"
+    assert truth["clock_fit_m"] < 10.0
     assert 100.0 < truth["min_separation_m"] < 400.0
     assert truth["min_separation_m"] == pytest.approx(run["min_separation_m"], abs=10.0)
     events = (tmp_path / "run" / "plant-events.jsonl").read_text().splitlines()
