@@ -28,8 +28,8 @@ from offboard.sitl.transports import Exchange, Udp
 
 RATE = 50
 """Steps of the plant per second [Hz]."""
-STEP = 0.05
-"""Of the autopilot [s]."""
+STEP = 2 / RATE
+"""Of the autopilot: a whole number of the plant's, or its clock would run ahead of the plant's [s]."""
 CAN = Performance(
     airspeed=15.0, max_bank=math.radians(30.0), roll_time=1.5, acceptance_radius=60.0, tracking_error=15.0
 )
