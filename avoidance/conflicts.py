@@ -61,12 +61,12 @@ def first_conflict(
     if not len(intruders) or not route.waypoints:
         return None
     separation, times = _approaches(own, route, performance, intruders)
-    doubt = intruders.doubt(times)
-    wanted = intruders.radii + intruders.margin
-    limit = wanted + doubt if resuming else np.maximum(wanted - 0.5 * intruders.margin - doubt, 0.0)
+    doubt, needed = intruders.doubt(times), intruders.needed(times)
+    surely = np.minimum(intruders.radii + 0.5 * intruders.margin - doubt, intruders.most)
+    limit = needed if resuming else np.maximum(surely, 0.0)
     close = ((separation < limit) & (times < CONFLICT_HORIZON))[0]
     if not resuming and close.any():
-        missing, yields = (wanted + doubt - separation)[0], _yields(own, intruders)
+        missing, yields = (needed - separation)[0], _yields(own, intruders)
         close &= ~_learning(intruders, missing, times[0], doubt[0]) & ~_young(intruders, times[0], yields)
     if not close.any():
         return None
@@ -81,7 +81,7 @@ def first_conflict(
         distance=time * max(own.ground_speed, 1.0),
         time=time,
         clearance=float(separation[0, leg, nearest]),
-        required=float(wanted[nearest] + doubt[0, leg, nearest]),
+        required=float(needed[0, leg, nearest]),
         moving=True,
     )
     return Blocked(threat, leg, np.empty(0, dtype=np.int64))
@@ -97,7 +97,11 @@ def _approaches(
 
 
 def to_be_avoided(own: Ownship, route: Route, known: Known, performance: Performance) -> Known:
-    """The same without those who are to give way to the own vehicle and still have the time to do so."""
+    """The same without those who are to give way to the own vehicle and still have the time to do so.
+
+    What is in the way must be avoided for good: a detour that only put it off until later, as a course
+    nearly the same does, would lead to where there is no room left.
+    """
     intruders = known.intruders
     if not len(intruders) or not route.waypoints:
         return known
@@ -105,8 +109,8 @@ def to_be_avoided(own: Ownship, route: Route, known: Known, performance: Perform
     when = np.take_along_axis(times[0], separation[0].argmin(axis=0)[None], axis=0)[0]
     yields = _yields(own, intruders)
     waits = ~yields & _young(intruders, when, yields)
-    if not waits.any():
-        return known
+    late = separation[0].min(axis=0) < intruders.needed(when)
+    intruders = replace(intruders, until=np.where(late, math.inf, intruders.until))
     return replace(known, intruder_ids=known.intruder_ids[~waits], intruders=intruders.chosen(~waits))
 
 

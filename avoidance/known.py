@@ -11,7 +11,7 @@ import numpy as np
 from avoidance.geofence import FENCE, Geofence, Walls
 from avoidance.parameters import Parameters
 from avoidance.picture import Picture
-from avoidance.prediction import Intruders
+from avoidance.prediction import DETOUR_HORIZON, LARGEST_DOUBT, Intruders, route_separation
 from avoidance.types import Bools, Floats, Ints, Ownship, Performance, Route
 
 ALTITUDE_TOLERANCE = 15.0
@@ -22,6 +22,8 @@ IMMINENT = 300.0
 """What is seen for the first time nearer to its sphere than this is believed at once [m]."""
 NEAR = 1500.0
 """What is nearer to its sphere than this, and not known to move, is taken to stand [m]."""
+RUN = 3.0
+"""Flown before a change of course takes effect [s]."""
 KNOWN_SPEED = 1.2
 """Whether a track moves is undecided while the standard deviation of its speed exceeds this [m/s]."""
 
@@ -151,21 +153,28 @@ def _traffic(
 ) -> dict[str, Any]:
     """What moves, where it is at the time of the vehicle's state, and the doubt about it."""
     flown = [own.altitude, *(waypoint.altitude for waypoint in route.waypoints[:3])]
-    return {
-        "intruder_ids": picture.ids[moving],
-        "intruders": Intruders(
-            ages=picture.ages[moving],
-            positions=picture.positions[moving, :2],
-            velocities=picture.velocities[moving],
-            altitudes=picture.positions[moving, 2],
-            climbs=picture.climbs[moving],
-            radii=radii[moving],
-            sigma=picture.sigma[moving],
-            speed_sigma=picture.speed_sigma[moving],
-            band=(min(flown) - ALTITUDE_TOLERANCE, max(flown) + ALTITUDE_TOLERANCE),
-            margin=parameters.moving_margin,
-        ).after(max(own.time - picture.time, 0.0)),
-    }
+    count = int(moving.sum())
+    intruders = Intruders(
+        positions=picture.positions[moving, :2],
+        velocities=picture.velocities[moving],
+        altitudes=picture.positions[moving, 2],
+        climbs=picture.climbs[moving],
+        radii=radii[moving],
+        sigma=picture.sigma[moving],
+        speed_sigma=picture.speed_sigma[moving],
+        ages=picture.ages[moving],
+        most=np.full(count, math.inf),
+        until=np.full(count, DETOUR_HORIZON),
+        band=(min(flown) - ALTITUDE_TOLERANCE, max(flown) + ALTITUDE_TOLERANCE),
+        margin=parameters.moving_margin,
+    ).after(max(own.time - picture.time, 0.0))
+    if count:
+        here, ahead = (own.north, own.east), (RUN * own.velocity_north, RUN * own.velocity_east)
+        run = np.array([[here, (here[0] + ahead[0], here[1] + ahead[1])]])
+        nearest = route_separation(run, max(own.ground_speed, 1.0), intruders)[0]
+        wanted = intruders.radii + intruders.margin + LARGEST_DOUBT
+        intruders = replace(intruders, most=np.where(nearest < wanted, nearest - 1.0, math.inf))
+    return {"intruder_ids": picture.ids[moving], "intruders": intruders}
 
 
 def within_fence(known: Known, fence: Geofence, own: Ownship, parameters: Parameters) -> Known:

@@ -14,7 +14,7 @@ LARGEST_DOUBT = 400.0
 CONFLICT_HORIZON = 800.0
 """A closest approach later than this is no conflict yet [s]."""
 DETOUR_HORIZON = 1000.0
-"""A detour keeps its distance from all that come nearest before this [s]."""
+"""A detour keeps its distance from all that come nearest before this, and from those it is for always [s]."""
 LEVEL_FLIGHT = 1e-6
 """A climb rate below this is none [m/s]."""
 
@@ -43,6 +43,10 @@ class Intruders:
     """Standard deviation of the velocity [m/s], shape (q,)."""
     ages: Floats = field(default_factory=_none)
     """How long they have flown straight on as far as is known [s], shape (q,)."""
+    most: Floats = field(default_factory=_none)
+    """No more than this can be kept, for they are so near already [m], shape (q,)."""
+    until: Floats = field(default_factory=_none)
+    """A detour keeps its distance from those that come nearest before this time [s], shape (q,)."""
     band: tuple[float, float] = (0.0, 0.0)
     """Lowest and highest altitude that the own vehicle flies at [m]."""
     margin: float = 0.0
@@ -71,6 +75,10 @@ class Intruders:
         """Standard deviation of where they are after `times` of shape (..., q) [m], same shape."""
         spread = np.sqrt(self.sigma**2 + (self.speed_sigma * times) ** 2)
         return np.asarray(np.minimum(spread, LARGEST_DOUBT))
+
+    def needed(self, times: Floats) -> Floats:
+        """What a new route keeps from each that is nearest after `times`, shape (..., q) [m]."""
+        return np.asarray(np.minimum(self.radii + self.margin + self.doubt(times), self.most))
 
 
 def leg_approaches(
@@ -186,8 +194,7 @@ def separation_shortfall(points: Floats, speeds: Floats | float, intruders: Intr
     Arguments as of `leg_approaches`.
     """
     separation, times = leg_approaches(points, speeds, intruders)
-    missing = intruders.radii + intruders.margin + intruders.doubt(times) - separation
-    missing = np.where(times < DETOUR_HORIZON, missing, 0.0)
+    missing = np.where(times < intruders.until, intruders.needed(times) - separation, 0.0)
     return np.asarray(np.maximum(missing.max(axis=(1, 2)), 0.0))
 
 

@@ -61,6 +61,8 @@ def intruders(*rows: tuple[float, float, float, float], margin: float = 100.0) -
         sigma=none,
         speed_sigma=none,
         ages=none + 1000.0,
+        most=none + math.inf,
+        until=none + math.inf,
         band=(185.0, 215.0),
         margin=margin,
     )
