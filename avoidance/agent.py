@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +17,7 @@ from avoidance.known import Known, keep_what_can_be_kept, known_obstacles, withi
 from avoidance.ladder import Way, way_round
 from avoidance.parameters import DEFAULT, Parameters
 from avoidance.passages import Gap, way_with_orbits
+from avoidance.rally import Rally
 from avoidance.replacement import Replacements
 from avoidance.return_to_leg import ReturnToLeg
 from avoidance.route_check import Blocked, first_blocked_leg
@@ -64,6 +66,8 @@ class Agent:
         Finds the way round; another planner than the ladder of single waypoints.
     geofence : Geofence, optional
         Bounds every detour, route, stand-in and orbit.
+    rally : sequence of Waypoint, optional
+        Rally points: where to wait if no way is free, rather than on the spot.
 
     Notes
     -----
@@ -80,6 +84,7 @@ class Agent:
         rng: np.random.Generator | None = None,
         way: Way = way_round,
         geofence: Geofence = OPEN,
+        rally: Sequence[Waypoint] = (),
     ) -> None:
         self._performance = performance
         self._parameters = parameters
@@ -91,6 +96,8 @@ class Agent:
         self._escape = Escape(performance)
         self._replacements = Replacements(performance, parameters, geofence)
         self._second_thoughts = SecondThoughts()
+        self._rally = Rally(rally, performance, parameters)
+        self._refuge: Waypoint | None = None
         self._checked: int | None = None
         self._failures = 0
         self._checked_route: Route | None = None
@@ -138,7 +145,7 @@ class Agent:
         if isinstance(decision, Keep | Hold):
             self._checked_route, self._checked = route, picture.version
         if decision.route is not None:
-            self._holding = False  # a new route ends a hold
+            self._holding, self._refuge = False, None  # a new route ends a hold
         return decision
 
     def _watch(self, own: Ownship, route: Route, known: Known) -> Decision:
@@ -183,6 +190,8 @@ class Agent:
             if walled_in is not None:
                 return walled_in
         self._retry_at = own.time + RETRY
+        if self._holding and self._cut_off(gap):
+            return self._hold(gap)
         if blocked.threat.moving or (gap.begin > 0 and blocked.threat.distance > LATER):
             words = f"{threat_words(blocked.threat)}; no way round is known yet"
             return Keep(why=words, threat=blocked.threat, rung=Rung.ORBIT)
@@ -218,6 +227,20 @@ class Agent:
                 self._holding = False
                 return skipped(gap.route, gap.blocked, gap.end)
             return Keep(why=holding_words(gap.blocked), threat=threat, rung=Rung.ORBIT)
+        return self._hold(gap)
+
+    def _cut_off(self, gap: Gap) -> bool:
+        """True if something has come into the way to the rally point that is flown to."""
+        refuge = self._refuge
+        return refuge is not None and not self._rally.free(gap.own, refuge, gap.known, flown=True)
+
+    def _hold(self, gap: Gap) -> Decision:
+        """Wait at a rally point that can be reached, else here as soon as there is room to."""
+        threat = gap.blocked.threat
+        self._refuge = self._rally.nearest(gap.own, gap.known)
+        if self._refuge is not None:
+            self._holding = True
+            return self._rally.hold(gap.own, self._refuge, gap.blocked)
         orbit = orbit_from_here(gap.own, gap.known, self._performance)
         if orbit.clearance < 0.0 and threat.distance > LAST_MOMENT * self._performance.turn_radius:
             self._retry_at = gap.own.time

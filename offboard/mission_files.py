@@ -15,7 +15,7 @@ from pathlib import Path
 
 from offboard.errors import PlanFileError
 from offboard.geofence import GeofenceData, fence_object, fence_of
-from offboard.plan_files import PX4, document_of, mission_object, numbers, write_whole
+from offboard.plan_files import PX4, document_of, mission_object, numbers, rally_of, write_whole
 from offboard.plan_items import FileItem, entry_of, items_of
 from offboard.raw_mission import RawMission
 
@@ -106,18 +106,8 @@ def _read_plan(file: Path) -> MissionFile:
     if not isinstance(entries, list):
         raise PlanFileError(file, "mission.items is missing or no list")
     items = [item for index, entry in enumerate(entries) for item in items_of(file, index, entry)]
-    rally = _rally(file, document.get("rallyPoints"))
+    rally = rally_of(file, document.get("rallyPoints"))
     return MissionFile(tuple(items), (home[0], home[1], home[2]), speed, geofence, rally, document)
-
-
-def _rally(file: Path, value: object) -> tuple[tuple[float, float, float], ...]:
-    if value is None:
-        return ()
-    points = value.get("points") if isinstance(value, Mapping) else None
-    if not isinstance(points, list):
-        raise PlanFileError(file, "rallyPoints has no list of points")
-    found = [numbers(file, {"rallyPoints": point}, "rallyPoints", 3) for point in points]
-    return tuple((a, b, c) for a, b, c in found)
 
 
 def _plan_text(content: MissionFile) -> str:

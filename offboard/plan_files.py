@@ -62,6 +62,8 @@ class PlanFile:
     """Speed where the mission gives none [m/s]."""
     geofence: GeofenceData = field(default_factory=GeofenceData)
     """Where the vehicle may be; whoever flies the plan must keep to it."""
+    rally: tuple[tuple[float, float, float], ...] = ()
+    """Latitude, longitude [deg] and altitude above home [m] of each rally point."""
 
 
 def write_plan(file: Path, content: PlanFile) -> None:
@@ -97,7 +99,7 @@ def write_plan(file: Path, content: PlanFile) -> None:
             "items": entries,
         },
         "geoFence": fence_object(content.geofence),
-        "rallyPoints": {"version": 2, "points": []},
+        "rallyPoints": {"version": 2, "points": [list(point) for point in content.rally]},
     }
     try:
         write_whole(file, json.dumps(document, indent=2, allow_nan=False) + "\n")
@@ -138,7 +140,15 @@ def read_plan(file: Path) -> PlanFile:
             speed = params[1]
     if not items:
         raise PlanFileError(file, "mission.items holds nothing to fly to")
-    return PlanFile(MissionPlan.of(items), latitude_deg, longitude_deg, altitude_m, speed, geofence)
+    return PlanFile(
+        MissionPlan.of(items),
+        latitude_deg,
+        longitude_deg,
+        altitude_m,
+        speed,
+        geofence,
+        rally_of(file, document.get("rallyPoints")),
+    )
 
 
 def _entry(item: MissionItem, number: int) -> dict[str, object]:
@@ -197,6 +207,23 @@ def write_whole(file: Path, text: str) -> None:
     except BaseException:
         Path(name).unlink(missing_ok=True)
         raise
+
+
+def rally_of(file: Path, value: object) -> tuple[tuple[float, float, float], ...]:
+    """Latitude, longitude [deg] and altitude above home [m] of each rally point of a plan.
+
+    Raises
+    ------
+    PlanFileError
+        If they cannot be understood.
+    """
+    if value is None:
+        return ()
+    points = value.get("points") if isinstance(value, Mapping) else None
+    if not isinstance(points, list):
+        raise PlanFileError(file, "rallyPoints has no list of points")
+    found = [numbers(file, {"rallyPoints": point}, "rallyPoints", 3) for point in points]
+    return tuple((a, b, c) for a, b, c in found)
 
 
 def document_of(file: Path) -> Mapping[str, object]:

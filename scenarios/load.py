@@ -39,7 +39,7 @@ CATALOGUE = Path(__file__).parent / "catalogue"
 DEFAULT_SCENARIO = "table4"
 DEFAULT_ALTITUDE = 200.0
 """Altitude of a waypoint that gives none [m]."""
-LISTS = ("mission", "obstacles", "traffic", "vehicles", "geofence")
+LISTS = ("mission", "obstacles", "traffic", "vehicles", "geofence", "rally")
 
 
 def catalogue_names() -> list[str]:
@@ -197,12 +197,13 @@ def _build(located: _Located, default_name: str, folder: Path) -> tuple[list[Pro
     geofence = tuple(
         _area(places, area, located.key("geofence", index)) for index, area in enumerate(table.geofence)
     )
+    rally = tuple(places.points(table.rally, cruise, partial(located.key, "rally")))
     problems = list(places.problems)
     if _utc(table.start_time_utc) is None:
         message = "must lie within the years 1 to 9999 in UTC"
         problems.append(Problem("start_time_utc", str(table.start_time_utc), message))
     scenario = _assemble(table, default_name, mission, obstacles, traffic, missions)
-    scenario = replace(scenario, geofence=geofence, vehicle=_vehicle(table, folder))
+    scenario = replace(scenario, geofence=geofence, rally=rally, vehicle=_vehicle(table, folder))
     return problems + semantic_problems(scenario, table, located.key), scenario
 
 

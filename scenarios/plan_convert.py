@@ -14,6 +14,7 @@ from offboard.raw_mission import CHANGE_SPEED, FLOWN_TO, MISSION, WAYPOINT, RawM
 from scenarios.errors import ScenarioError
 from scenarios.fence import FenceArea, geofence_data
 from scenarios.load import load
+from scenarios.rally import rally_data, rally_points
 from scenarios.scenario import Home, Point, Scenario, VehicleSettings
 from scenarios.toml_text import to_toml
 
@@ -52,7 +53,7 @@ def is_mission_file(text: str) -> bool:
 
 
 def mission_file_of(scenario: Scenario) -> MissionFile:
-    """A scenario's mission and geofence; obstacles, wind and all else have no place there."""
+    """A scenario's mission, geofence and rally points; obstacles, wind and all else have no place there."""
     home = scenario.home
     frame = MapFrame(home.latitude_deg, home.longitude_deg, home.altitude_m)
     items = []
@@ -63,11 +64,12 @@ def mission_file_of(scenario: Scenario) -> MissionFile:
             items.append(FileItem(CHANGE_SPEED, MISSION, (0.0, point.speed, -1.0, 0.0, 0.0, 0.0, 0.0)))
     fence = geofence_data(scenario.geofence, frame)
     place = (home.latitude_deg, home.longitude_deg, home.altitude_m)
-    return MissionFile(tuple(items), place, scenario.vehicle.airspeed, fence)
+    rally = rally_data(scenario.rally, frame)
+    return MissionFile(tuple(items), place, scenario.vehicle.airspeed, fence, rally)
 
 
 def scenario_of_file(content: MissionFile, name: str) -> Scenario:
-    """A mission file as a scenario without obstacles: its waypoints, speeds and geofence."""
+    """A mission file as a scenario without obstacles: its waypoints, speeds, geofence and rally points."""
     mission = content.mission()
     home = content.home
     if home is None:
@@ -89,6 +91,7 @@ def scenario_of_file(content: MissionFile, name: str) -> Scenario:
         mission=tuple(points),
         vehicle=VehicleSettings(airspeed=mission.first_speed() or content.cruise_speed_m_s),
         geofence=fence_areas(content.geofence, frame),
+        rally=rally_points(content.rally, frame),
     )
 
 
@@ -127,6 +130,5 @@ def _as_scenario(source: str) -> tuple[Scenario, list[str]]:
     known = FLOWN_TO | {CHANGE_SPEED}
     other = sorted({item.command for item in content.items if item.command not in known})
     lost = [f"items of other kinds than waypoints (commands {', '.join(map(str, other))})"] if other else []
-    lost += ["the rally points"] if content.rally else []
     RawMission.of([item.raw() for item in content.items])
     return scenario_of_file(content, Path(source).stem), lost

@@ -21,6 +21,7 @@ from offboard.plan_files import PlanFile, write_plan
 from scenarios.errors import RunDirectoryError
 from scenarios.fence import geofence_data
 from scenarios.flown import Flown, LoggedDecision
+from scenarios.rally import rally_data
 from scenarios.scenario import OWN, Obstacle
 from scenarios.score import Score
 from scenarios.target import PREFIX, check_target, followed
@@ -98,7 +99,8 @@ def _write_files(directory: Path, flown: Flown, score: Score) -> None:
     for number, vehicle in enumerate(flown.vehicles):
         place = (home.latitude_deg, home.longitude_deg, home.altitude_m)
         fence = geofence_data(flown.scenario.geofence, flown.frame)
-        plan = PlanFile(vehicle.plan, *place, cruise, fence)
+        rally = rally_data(flown.scenario.rally, flown.frame)
+        plan = PlanFile(vehicle.plan, *place, cruise, fence, rally)
         write_plan(directory / plan_name(vehicle.name, number), plan)
 
 

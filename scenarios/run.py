@@ -18,6 +18,7 @@ from scenarios.movers import Flyer, Mover
 from scenarios.pilots import Desk, FaultyPilot, Navigation
 from scenarios.planners import way_of
 from scenarios.radar import SimulatedRadar
+from scenarios.rally import core_rally
 from scenarios.scenario import Member, Point, RadarSettings, Scenario, scatter, streams
 from scenarios.track import Track
 from scenarios.watched import Blind, FlyOn, TimedClock, TimedRadar, WatchedAgent
@@ -149,7 +150,8 @@ class Flight:
 
             told, way = way_of(informed(self._parameters, self._scenario.radar))
             fence = core_fence(self._scenario.geofence)
-            core = Core(vehicle.performance, told, generators["planner"], way, fence)
+            rally = core_rally(self._scenario.rally)
+            core = Core(vehicle.performance, told, generators["planner"], way, fence, rally)
         agent = WatchedAgent(core)
         pilot = Pilot(vehicle, radar, agent)
         if settings.position_error > 0.0 or settings.decision_latency > 0.0:

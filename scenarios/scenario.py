@@ -231,6 +231,8 @@ class Scenario:
     """Planner of ways round it is flown with, unless another is given."""
     geofence: tuple[FenceArea, ...] = ()
     """Where vehicles may be; empty for everywhere."""
+    rally: tuple[Point, ...] = ()
+    """Rally points: where to wait if no way is free; empty for the spot."""
     vehicles: tuple[Member, ...] = ()
     """Several own vehicles, each with its mission; empty for one that flies `mission`."""
 

@@ -198,3 +198,4 @@ class ScenarioTable(Table):
     traffic: Annotated[list[TrafficTable], Field(max_length=1_000)] = []
     vehicles: Annotated[list[MemberTable], Field(max_length=100)] = []
     geofence: Annotated[list[FenceTable], Field(max_length=100)] = []
+    rally: Annotated[list[PositionTable], Field(max_length=1_000)] = []

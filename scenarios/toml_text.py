@@ -77,6 +77,7 @@ def to_toml(scenario: Scenario) -> str:
     parts += [_table("[[obstacles]]", **_obstacle(o)) for o in scenario.obstacles]
     parts += [_table("[[traffic]]", **_traffic(t)) for t in scenario.traffic]
     parts += [_table("[[geofence]]", **_area(area)) for area in scenario.geofence]
+    parts += [_table("[[rally]]", **_point(point)) for point in scenario.rally]
     parts += [
         _table("[[vehicles]]", id=m.id, name=m.name, mission=[_point(p) for p in m.mission])
         for m in scenario.vehicles

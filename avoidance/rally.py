@@ -1,0 +1,95 @@
+"""Rally points: places to wait at, chosen by whoever planned the mission, where no way on is free."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from avoidance.conflicts import first_conflict
+from avoidance.contingency import WIDE, first_trap, orbit_reach
+from avoidance.known import Known
+from avoidance.parameters import Parameters
+from avoidance.route_check import Blocked, first_blocked_leg
+from avoidance.types import Hold, Ownship, Performance, Route, Rung, Waypoint
+from avoidance.words import threat_words
+
+
+class Rally:
+    """Finds the rally point to wait at.
+
+    Parameters
+    ----------
+    points : sequence of Waypoint
+        All of them, in the order of the mission's list.
+    performance : Performance
+        What the vehicle can fly.
+    parameters : Parameters
+        What is to be kept.
+
+    Notes
+    -----
+    As the autopilots do on a return, the nearest is taken; other than with them its way and its circle must
+    be free: as the rest of a route is tested, to the centre and along both tangents of the circle, for
+    autopilots join it as they please.
+    """
+
+    def __init__(self, points: Sequence[Waypoint], performance: Performance, parameters: Parameters) -> None:
+        self._points = tuple(points)
+        self._performance = performance
+        self._parameters = parameters
+
+    @property
+    def radius(self) -> float:
+        """Of the circle about a rally point [m]."""
+        return WIDE * self._performance.turn_radius
+
+    def nearest(self, own: Ownship, known: Known) -> Waypoint | None:
+        """The nearest rally point that can be flown to and circled about; None if there is none."""
+        ordered = sorted(self._points, key=lambda p: math.hypot(p.north - own.north, p.east - own.east))
+        return next((point for point in ordered if self.free(own, point, known)), None)
+
+    def free(self, own: Ownship, point: Waypoint, known: Known, *, flown: bool = False) -> bool:
+        """True if a rally point can be flown to and circled about; `flown` for one that is on the way to."""
+        low, high = sorted((own.altitude, point.altitude))
+        circles = known.circles(low, high)
+        here, centre = np.array([own.north, own.east]), np.array([[point.north, point.east]])
+        room = float(known.walls.clearance(centre, centre)[0])
+        if len(circles.centres):
+            room = min(room, float((np.hypot(*(circles.centres - centre).T) - circles.hard).min()))
+        if room < self.radius + orbit_reach(self._performance, WIDE):
+            return False
+        if np.hypot(*(centre[0] - here)) <= 2.0 * self.radius:
+            return True
+        return not any(self._blocked(own, way, known, flown) for way in self._ways(own, point))
+
+    def hold(self, own: Ownship, point: Waypoint, blocked: Blocked) -> Hold:
+        """Fly to a rally point and wait there."""
+        away = math.hypot(point.north - own.north, point.east - own.east)
+        return Hold(
+            why=f"{threat_words(blocked.threat)}; no way round is known, "
+            f"wait at rally point {self._points.index(point) + 1}, {away / 1e3:.1f} km from here",
+            threat=blocked.threat,
+            rung=Rung.ORBIT,
+            centre=point,
+            radius=self.radius,
+            direction=1,
+        )
+
+    def _ways(self, own: Ownship, point: Waypoint) -> Iterator[Route]:
+        here = Waypoint(own.north, own.east, own.altitude)
+        north, east = point.north - own.north, point.east - own.east
+        length = math.hypot(north, east)
+        for side in (0.0, self.radius, -self.radius):
+            aside = (-side * east / length, side * north / length)
+            yield Route(here, (Waypoint(point.north + aside[0], point.east + aside[1], point.altitude),))
+
+    def _blocked(self, own: Ownship, way: Route, known: Known, flown: bool) -> bool:
+        performance = self._performance
+        slack = 1.0 if flown else 0.0
+        return (
+            first_blocked_leg(own, way, known, performance, slack=slack) is not None
+            or first_trap(own, way, known, performance, self._parameters) is not None
+            or first_conflict(own, way, known, performance, resuming=not flown) is not None
+        )
