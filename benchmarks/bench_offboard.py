@@ -1,7 +1,7 @@
 """Mission edits over a link: how long they take, and what becomes of them. Prints Markdown tables.
 
-    python benchmarks/bench_offboard.py            all of it, about half an hour
-    python benchmarks/bench_offboard.py --flights  only the flights
+    python -m benchmarks.bench_offboard            all of it, about half an hour
+    python -m benchmarks.bench_offboard edits      only the edits; likewise flights, pair
 
 The simulated autopilot is `sidestep sitl` in a process of its own; MAVSDK talks to it over UDP.
 """
@@ -42,12 +42,17 @@ def sitl(*arguments: str, scenario: str = "clear") -> Iterator[int]:
     """A simulated autopilot in a process of its own; the port that it sends to."""
     port = free_port()
     command = [sys.executable, "-m", "scenarios.cli", "sitl", scenario, "--port", str(port), *arguments]
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    try:
-        yield port
-    finally:
-        process.terminate()
-        process.wait(10)
+    with tempfile.TemporaryFile("w+") as said:
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=said)
+        try:
+            yield port
+        except BaseException:
+            said.seek(0)
+            print(f"{' '.join(command)} said, exit code {process.poll()}:\n{said.read()}", file=sys.stderr)
+            raise
+        finally:
+            process.terminate()
+            process.wait(10)
 
 
 @contextlib.contextmanager
@@ -190,10 +195,9 @@ def injected(directory: Path) -> list[tuple[float, float]]:
     return [(w["north_m"], w["east_m"]) for row in rows for w in row["waypoints"]]
 
 
+PARTS = {"edits": edits, "flights": flights, "pair": pair}
+
 if __name__ == "__main__":
-    if "--flights" not in sys.argv:
-        edits()
-        print()
-    flights()
-    print()
-    pair()
+    for name in sys.argv[1:] or PARTS:
+        PARTS[name]()
+        print(flush=True)

@@ -74,8 +74,10 @@ class RawItem:
         """True if both mean the same: autopilots change what does not matter on the way."""
         if self.command != other.command:
             return False
-        if self.command not in FLOWN_TO:
-            return True
+        return self.command not in FLOWN_TO or self.same_place(other)
+
+    def same_place(self, other: RawItem) -> bool:
+        """True if both are at one place, to what the wire keeps of it."""
         return abs(self.x - other.x) <= 2 and abs(self.y - other.y) <= 2 and abs(self.z - other.z) <= 0.5
 
 

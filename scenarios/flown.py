@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from avoidance import Decision, Ownship, Performance, Route
 from avoidance.parameters import Parameters
@@ -10,6 +11,9 @@ from offboard.frames import MapFrame
 from offboard.mission import MissionPlan
 from scenarios.scenario import Point, Scenario
 from scenarios.track import MovingTrack, Track
+
+if TYPE_CHECKING:
+    from offboard.live.aboard import Event
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,6 +87,10 @@ class Flown:
     """"finished", "time limit" or "interrupted"."""
     wall: WallTime
     """Where the time went."""
+    events: tuple[Event, ...] | None = None
+    """What a live vehicle's pilot was told; None for a flight in process."""
+    reckoned: tuple[tuple[float, float], ...] = ()
+    """From when to when the track is reckoned, for a live vehicle told no position [s]."""
 
     @property
     def performance(self) -> Performance:

@@ -33,6 +33,8 @@ DISARMED_FOR = 5.0
 """A vehicle that has been disarmed for so long before the end of its mission ends the flight [s]."""
 
 
+GUESSED = 1.0
+"""Where the vehicle was so long after the last position it told is a guess [s]."""
 AFTER_END = 0.2
 """The record goes on for so long after the end was reached: positions come ten times a second [s]."""
 SAME = 1.0
@@ -51,6 +53,12 @@ class Shadow:
     def __init__(self, vehicle: LiveVehicle) -> None:
         self._vehicle = vehicle
         self._now = 0.0
+        self._reckoned: list[tuple[float, float]] = []
+
+    @property
+    def reckoned(self) -> tuple[tuple[float, float], ...]:
+        """From when to when its position was a guess: nothing had told it [s]."""
+        return tuple((round(begin, 3), round(end, 3)) for begin, end in self._reckoned)
 
     @property
     def finished(self) -> bool:
@@ -59,6 +67,11 @@ class Shadow:
 
     def state(self) -> VehicleState:
         """Where it was."""
+        told = self._vehicle.heard_until
+        if self._now - told > GUESSED:
+            spans = self._reckoned
+            begin = spans.pop()[0] if spans and spans[-1][1] >= told else told
+            spans.append((begin, self._now))
         return VehicleState(self._vehicle.aboard.ownship_at(self._now))
 
     def advance(self, duration: float) -> None:
@@ -193,6 +206,8 @@ class LiveFlight:
             traffic=tuple(_cut(one, count) for one in traffic),
             ending=self.ending,
             wall=wall,
+            events=tuple(self.vehicle.aboard.events),
+            reckoned=self.shadow.reckoned,
         )
 
     def judged(self, flown: Flown) -> Score:
@@ -223,6 +238,7 @@ class LiveFlight:
             "edit_ms": spread,
             "fallbacks": self.vehicle.editor.fallbacks,
             "link_losses": self.vehicle.link_losses,
+            "frames_dropped": self.vehicle.aboard.session.dropped,
         }
 
 

@@ -138,4 +138,6 @@ def _nearest(scan: RadarScan, own: Ownship) -> str:
 def _link(vehicle: LiveVehicle) -> str:
     records = vehicle.editor.records
     edits = f"{len(records)} edits, {vehicle.editor.fallbacks} fall-backs"
+    if dropped := vehicle.aboard.session.dropped:
+        edits += f"; {dropped} unsigned or old frames dropped"
     return f"heard {vehicle.silent:.1f} s ago, lost {vehicle.link_losses} times; {edits}"

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     from avoidance.parameters import Parameters
     from offboard.live.vehicle import LiveVehicle
+    from scenarios.live_areas import LiveAreas
     from scenarios.live_flight import LiveFlight
     from scenarios.live_mission import LiveMission, SourceChoice
 
@@ -146,8 +147,8 @@ def fly(
 
     vehicle.aboard.listener = lambda event: say(event.text, event.severity)
     made = source.make(vehicle, parameters)
-    _prepare(vehicle, wanted, arm=arm)
-    scenario = scenario_of(vehicle, source.scenario or wanted.scenario, wanted.name)
+    areas = _prepare(vehicle, wanted, source, arm=arm)
+    scenario = areas.put_into(scenario_of(vehicle, source.scenario or wanted.scenario, wanted.name))
     with contextlib.closing(LiveFlight(scenario, vehicle, made, parameters, wanted.seed)) as flight:
         with LiveStatus(vehicle, flight, source.text) as status:
             for frame in _until_interrupted(flight):
@@ -156,10 +157,11 @@ def fly(
         return _write(flight, directory, as_json=as_json)
 
 
-def _prepare(vehicle: LiveVehicle, wanted: LiveMission, *, arm: bool) -> None:
-    """Put the mission on the vehicle, arm it and start it, as far as that is asked for."""
+def _prepare(vehicle: LiveVehicle, wanted: LiveMission, source: SourceChoice, *, arm: bool) -> LiveAreas:
+    """Put the mission on the vehicle, arm it and start it, as far as that is asked for; where it may be."""
     from offboard.live import starting  # noqa: PLC0415
     from offboard.live.autopilots import Mode  # noqa: PLC0415
+    from scenarios.live_areas import live_areas  # noqa: PLC0415
     from scenarios.live_show import say  # noqa: PLC0415
 
     aboard = vehicle.aboard
@@ -170,9 +172,12 @@ def _prepare(vehicle: LiveVehicle, wanted: LiveMission, *, arm: bool) -> None:
         f"acceptance radius {can.acceptance_radius:g} m; mode {aboard.mode_name}, "
         f"{'armed' if aboard.telemetry.armed else 'disarmed'}"
     )
+    if source.kind == "scenario" and not aboard.simulated:
+        aboard.tell("warning", "obstacles are those of a scenario: real ones are not seen (--obstacles)")
     if not vehicle.touch:
         vehicle.adopt_mission()
-        return
+        _check_same(vehicle, wanted)
+        return live_areas(vehicle, wanted.scenario)
     flying = aboard.telemetry.armed and aboard.mode is Mode.MISSION
     question = "REPLACE the mission that it flies" if flying and wanted.raw is not None else ""
     if not flying:
@@ -185,8 +190,22 @@ def _prepare(vehicle: LiveVehicle, wanted: LiveMission, *, arm: bool) -> None:
         vehicle.adopt_mission()
     else:
         vehicle.upload_raw(starting.with_take_off(wanted.raw, vehicle))
+    areas = live_areas(vehicle, wanted.scenario)
     starting.arm(vehicle)
     starting.fly_mission(vehicle)
+    return areas
+
+
+def _check_same(vehicle: LiveVehicle, wanted: LiveMission) -> None:
+    """A dry run of a mission needs that mission on board, for it uploads nothing."""
+    from scenarios.errors import ScenarioError  # noqa: PLC0415
+
+    if wanted.raw is not None and not vehicle.has_mission(wanted.raw):
+        raise ScenarioError(
+            "--dry-run",
+            f"the vehicle has another mission on board than {wanted.name!r}, and nothing is uploaded in a "
+            "dry run; put it on board first, or leave --mission out",
+        )
 
 
 def _ask(question: str) -> None:

@@ -10,7 +10,7 @@ import shutil
 import tempfile
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,6 +27,9 @@ from scenarios.score import Score
 from scenarios.target import PREFIX, check_target, followed
 from scenarios.toml_text import to_toml
 from scenarios.track import MovingTrack, Track
+
+if TYPE_CHECKING:
+    from offboard.live.aboard import Event
 
 
 def write_run(
@@ -93,6 +96,8 @@ def _write_files(directory: Path, flown: Flown, score: Score) -> None:
         "decisions.jsonl": "".join(json_line(row) for row in decision_rows(flown)),
         "run.json": json.dumps(run_facts(flown), indent=2, allow_nan=False) + "\n",
     }
+    if flown.events is not None:
+        texts["events.jsonl"] = "".join(json_line(event_row(event)) for event in flown.events)
     for name, text in texts.items():
         (directory / name).write_text(text, encoding="utf-8", newline="\n")
     cruise = flown.scenario.vehicle.airspeed
@@ -169,8 +174,14 @@ def waypoints_text(score: Score) -> str:
     return text
 
 
+def event_row(event: Event) -> dict[str, Any]:
+    """One line of `events.jsonl` as a dict."""
+    return {"t_s": round(event.time, 3), "severity": event.severity, "text": event.text}
+
+
 def run_facts(flown: Flown) -> dict[str, Any]:
     """`run.json`: how the run was made, and where its wall time went."""
+    live = {} if flown.events is None else {"reckoned_s": [list(span) for span in flown.reckoned]}
     return {
         "scenario": flown.scenario.name,
         "seed": flown.seed,
@@ -189,6 +200,7 @@ def run_facts(flown: Flown) -> dict[str, Any]:
             "radar": round(flown.wall.radar, 3),
             "plant_and_world": round(flown.wall.world, 3),
         },
+        **live,
     }
 
 

@@ -9,8 +9,10 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
 from avoidance.parameters import Parameters
+from offboard.area_items import fence_items, rally_items
 from offboard.frames import MapFrame
 from offboard.link import VehicleState
+from offboard.raw_mission import RawItem
 from offboard.sitl.aircraft import Aircraft, Phase
 from offboard.sitl.autopilot import Autopilot, Settings
 from offboard.sitl.dialect import mavlink
@@ -19,9 +21,11 @@ from offboard.sitl.items import WireItem
 from offboard.sitl.px4 import LANDING_WANTED
 from offboard.sitl.sensors import Report, Return, show_radar, show_traffic
 from scenarios.errors import ScenarioError
+from scenarios.fence import geofence_data
 from scenarios.hangar import Hangar
 from scenarios.movers import Mover
 from scenarios.radar import SimulatedRadar
+from scenarios.rally import rally_data
 from scenarios.scenario import OWN, Member, Point, Scenario, streams
 from scenarios.world import World
 
@@ -159,7 +163,14 @@ class SitlWorld:
         autopilot = Autopilot(aircraft, settings)
         if not on_ground:
             autopilot.load_mission(wire_mission(member.mission, self._hangar.frame))
+            autopilot.load_areas(*self._areas())
         return autopilot
+
+    def _areas(self) -> tuple[list[WireItem], list[WireItem]]:
+        """The scenario's geofence and rally points as wire items."""
+        fence = fence_items(geofence_data(self.scenario.geofence, self._hangar.frame))
+        rally = rally_items(rally_data(self.scenario.rally, self._hangar.frame))
+        return list(map(_wire, fence)), list(map(_wire, rally))
 
     def _sweep(self, period: float) -> None:
         """What each vehicle's radar sees, and who reports to it, goes out on its links."""
@@ -232,6 +243,10 @@ def fleet_of(scenario: Scenario, count: int, *, on_ground: bool) -> tuple[Member
         mission = tuple(replace(point, east=point.east + apart * number) for point in scenario.mission)
         members.append(Member(FIRST_ID + number, f"vehicle {number + 1}", mission))
     return tuple(members)
+
+
+def _wire(item: RawItem) -> WireItem:
+    return WireItem(item.frame, item.command, *item.params, item.x, item.y, item.z, item.autocontinue)
 
 
 def wire_mission(points: Sequence[Point], frame: MapFrame) -> list[WireItem]:

@@ -14,11 +14,14 @@ MARKS_OF_A_RUN = ("summary.json", "track.csv", "scenario.toml")
 """A directory with these files is a previous run."""
 FILES_OF_A_PLANT = ("plant-track.csv", "plant-events.jsonl", "plant-summary.json")
 """What a plant in the loop adds to the run of the autopilot that flew it."""
+FILE_OF_A_LINK = "events.jsonl"
+"""What a live vehicle's pilot was told."""
 FILES_OF_A_RUN = frozenset(
     (
         *MARKS_OF_A_RUN,
         *("obstacles.csv", "traffic.csv", "waypoints.csv", "decisions.jsonl", "run.json", "mission.plan"),
         "report.html",
+        FILE_OF_A_LINK,
         *FILES_OF_A_PLANT,
     )
 )

@@ -20,6 +20,11 @@ from offboard.raw_mission import Composed, RawItem
 NO_MISSION = 1
 """MISSION_STATE of an autopilot that finds nothing to fly in what it has accepted."""
 
+BUSY = "BUSY"
+"""MAVSDK's word while it still works on an earlier upload."""
+BUSY_FOR = 0.05
+"""It is asked again after this time [s, wall clock]."""
+
 
 @dataclass(frozen=True, slots=True)
 class EditRecord:
@@ -103,7 +108,7 @@ class EditRun:
             start=start,
         )
         self._upload = self._select = -1
-        self._sent = self._selected = math.inf
+        self._sent = self._selected = self._send_again = math.inf
         self._accepted = False
         self._refused = False
 
@@ -122,8 +127,13 @@ class EditRun:
         return EditRecord(time, status, 1e3 * (self._session.wall() - self.begun))
 
     def reply(self, reply: Reply) -> None:
-        """Take over the outcome of a request; those of others and of earlier attempts are left alone."""
-        if reply.token == self._upload:
+        """Take over the outcome of a request; those of others and of earlier attempts are left alone.
+
+        That MAVSDK is busy with an earlier upload, which has been called off, is no answer of the vehicle's.
+        """
+        if reply.token == self._upload and reply.why == BUSY:
+            self._send_again = self._session.wall() + BUSY_FOR
+        elif reply.token == self._upload:
             self._accepted, self._refused = reply.ok, not reply.ok
         elif reply.token == self._select and not reply.ok:
             self._refused = True
@@ -146,7 +156,11 @@ class EditRun:
         """Do what is next; the action tells when to fall back."""
         action = self._edit.poll(self._session.wall(), self._observed(telemetry))
         match action:
+            case EditAction.WAIT if self._session.wall() >= self._send_again:
+                self._send_again = math.inf
+                self._upload = self._session.upload(self._wire, self._current)
             case EditAction.SEND:
+                self._send_again = math.inf
                 self._accepted = self._refused = False
                 self._sent, self._selected = self._session.wall(), math.inf
                 self._select = -1

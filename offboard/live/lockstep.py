@@ -132,6 +132,12 @@ class LockstepSession(MavsdkSession):
         self._open.add(token)
         return token
 
+    def put(self, what: Ask, items: tuple[RawItem, ...]) -> int:
+        """Replace the geofence or the rally points."""
+        token = super().put(what, items)
+        self._open.add(token)
+        return token
+
     def ask(self, what: Ask, *values: float) -> int:
         """Ask for something."""
         token = super().ask(what, *values)

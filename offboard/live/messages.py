@@ -49,6 +49,10 @@ class Ask(Enum):
     ARM = "arm"
     TAKE_OFF = "take off"
     SPEED = "change speed"
+    PUT_FENCE = "take a geofence"
+    PUT_RALLY = "take rally points"
+    GET_FENCE = "give its geofence"
+    GET_RALLY = "give its rally points"
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +68,7 @@ class Reply:
     why: str = ""
     """MAVSDK's word for what went wrong."""
     items: tuple[RawItem, ...] = ()
-    """The mission, if that was asked for."""
+    """The mission, geofence or rally points, if that was asked for."""
     arrived: float = 0.0
     """Wall clock on arrival [s]."""
 
@@ -78,6 +82,9 @@ class Session(Protocol):
     def upload(self, items: tuple[RawItem, ...], current: int) -> int:
         """Replace the mission, item `current` flagged as the one to fly; the request's number."""
 
+    def put(self, what: Ask, items: tuple[RawItem, ...]) -> int:
+        """Replace the geofence or the rally points; the request's number."""
+
     def ask(self, what: Ask, *values: float) -> int:
         """Ask for something; its values are those of MAVSDK's call of that name. The request's number."""
 
@@ -89,6 +96,10 @@ class Session(Protocol):
 
     def set_parameter(self, name: str, value: float) -> bool:
         """Set a parameter of the vehicle; False if it does not take it. Waits for the answer."""
+
+    @property
+    def dropped(self) -> int | None:
+        """Frames not let in for they were not signed with our key, or old; None on a link without a key."""
 
     def wall(self) -> float:
         """Wall clock [s], the one that `arrived` is of."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import queue
 import time
@@ -37,6 +38,8 @@ MESSAGES = (
     "COLLISION",
 )
 """What is listened to."""
+MISSION_LIST, FENCE_LIST, RALLY_LIST = 0, 1, 2
+"""MAV_MISSION_TYPE numbers."""
 SET_MESSAGE_INTERVAL = 511
 """MAV_CMD number."""
 CHANGE_SPEED = 178
@@ -67,6 +70,7 @@ class MavsdkSession:
         self._system = system
         self._queue: queue.SimpleQueue[Message | Reply] = queue.SimpleQueue()
         self._tokens = count(1)
+        self._uploading = 0
         self._mission = MissionRaw(system)
         self._action = Action(system)
         self._parameters = Param(system)
@@ -78,6 +82,11 @@ class MavsdkSession:
     def system_id(self) -> int:
         """MAVLink system number of the vehicle."""
         return int(self._system.get_system_id())
+
+    @property
+    def dropped(self) -> int | None:
+        """Frames not let in for they were not signed with our key, or old; None on a link without a key."""
+        return None if self._relay is None else self._relay.dropped
 
     def poll(self, timeout: float = 0.0) -> list[Message | Reply]:
         """Everything that has come in; waits up to `timeout` wall seconds for the first."""
@@ -91,28 +100,23 @@ class MavsdkSession:
 
     def upload(self, items: tuple[RawItem, ...], current: int) -> int:
         """Replace the mission, item `current` flagged as the one to fly; the request's number."""
-        from mavsdk.plugins.mission_raw import MissionItem  # noqa: PLC0415
-
-        raw = [
-            MissionItem(
-                seq=index,
-                frame=item.frame,
-                command=item.command,
-                current=int(index == current),
-                autocontinue=item.autocontinue,
-                param1=item.params[0],
-                param2=item.params[1],
-                param3=item.params[2],
-                param4=item.params[3],
-                x=item.x,
-                y=item.y,
-                z=item.z,
-                mission_type=0,
-            )
-            for index, item in enumerate(items)
-        ]
         token = next(self._tokens)
+        if self._uploading:  # it would refuse another one as BUSY until it gives this one up
+            self._cancel_upload()
+        self._uploading = token
+        raw = [_mavsdk_item(item, index, index == current) for index, item in enumerate(items)]
         self._mission.upload_mission_async(raw, self._on_reply(Ask.UPLOAD, token))
+        return token
+
+    def put(self, what: Ask, items: tuple[RawItem, ...]) -> int:
+        """Replace the geofence or the rally points; the request's number."""
+        send, kind = {
+            Ask.PUT_FENCE: (self._mission.upload_geofence_async, FENCE_LIST),
+            Ask.PUT_RALLY: (self._mission.upload_rally_points_async, RALLY_LIST),
+        }[what]
+        token = next(self._tokens)
+        raw = [_mavsdk_item(item, index, current=False, kind=kind) for index, item in enumerate(items)]
+        send(raw, self._on_reply(what, token))
         return token
 
     def ask(self, what: Ask, *values: float) -> int:
@@ -123,7 +127,11 @@ class MavsdkSession:
             case Ask.SELECT:
                 self._mission.set_current_mission_item_async(int(values[0]), answer)
             case Ask.DOWNLOAD:
-                self._mission.download_mission_async(self._on_mission(token))
+                self._mission.download_mission_async(self._on_list(what, token))
+            case Ask.GET_FENCE:
+                self._mission.download_geofence_async(self._on_list(what, token))
+            case Ask.GET_RALLY:
+                self._mission.download_rallypoints_async(self._on_list(what, token))
             case Ask.MISSION_MODE:
                 self._mission.start_mission_async(answer)
             case Ask.HOLD:
@@ -136,8 +144,8 @@ class MavsdkSession:
                 self._action.takeoff_async(answer)
             case Ask.SPEED:
                 self._action.set_current_speed_async(values[0], answer)
-            case Ask.UPLOAD:
-                raise ValueError("a mission is uploaded by `upload`")
+            case Ask.UPLOAD | Ask.PUT_FENCE | Ask.PUT_RALLY:
+                raise ValueError("lists are uploaded by `upload` and `put`")
         return token
 
     def request_rate(self, message_id: int, rate: float) -> None:
@@ -198,18 +206,26 @@ class MavsdkSession:
         fields = json.loads(message.fields_json)
         self._queue.put(Message(message.message_name, fields, message.component_id, self.wall()))
 
+    def _cancel_upload(self) -> None:
+        from mavsdk.plugins.mission_raw import MissionRawError  # noqa: PLC0415
+
+        with contextlib.suppress(MissionRawError):  # it has just come to its end
+            self._mission.cancel_mission_upload()
+
     def _on_reply(self, what: Ask, token: int) -> Callable[..., None]:
         def answer(result: Any, *_: object) -> None:  # noqa: ANN401
+            if token == self._uploading:
+                self._uploading = 0
             ok = result.name == "SUCCESS"
             self._queue.put(Reply(what, token, ok, result.name, arrived=self.wall()))
 
         return answer
 
-    def _on_mission(self, token: int) -> Callable[..., None]:
+    def _on_list(self, what: Ask, token: int) -> Callable[..., None]:
         def answer(result: Any, items: list[Any], *_: object) -> None:  # noqa: ANN401
             ok = result.name == "SUCCESS"
             raw = tuple(_raw(item) for item in items) if ok else ()
-            self._queue.put(Reply(Ask.DOWNLOAD, token, ok, result.name, raw, self.wall()))
+            self._queue.put(Reply(what, token, ok, result.name, raw, self.wall()))
 
         return answer
 
@@ -287,6 +303,26 @@ def quiet_mavsdk() -> Mavsdk:
 
     log_subscribe(lambda *_: True)
     return Mavsdk(Configuration.create_with_component_type(ComponentType.COMPANION_COMPUTER))
+
+
+def _mavsdk_item(item: RawItem, seq: int, current: bool, kind: int = MISSION_LIST) -> Any:  # noqa: ANN401
+    from mavsdk.plugins.mission_raw import MissionItem  # noqa: PLC0415
+
+    return MissionItem(
+        seq=seq,
+        frame=item.frame,
+        command=item.command,
+        current=int(current),
+        autocontinue=item.autocontinue,
+        param1=item.params[0],
+        param2=item.params[1],
+        param3=item.params[2],
+        param4=item.params[3],
+        x=item.x,
+        y=item.y,
+        z=item.z,
+        mission_type=kind,
+    )
 
 
 def _raw(item: Any) -> RawItem:  # noqa: ANN401

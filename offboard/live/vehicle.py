@@ -18,7 +18,7 @@ from offboard.live.watch import Seen, Watch
 from offboard.mission import MissionItem, MissionPlan, MissionProgress
 from offboard.mission_list import MissionList
 from offboard.orbit import Orbit
-from offboard.raw_mission import Composed, RawItem, RawMission, compose
+from offboard.raw_mission import TAKE_OFFS, Composed, RawItem, RawMission, compose
 
 OBSTACLES = frozenset({"ADSB_VEHICLE", "OBSTACLE_DISTANCE", "OBSTACLE_DISTANCE_3D", "COLLISION"})
 """Messages that are handed on to whoever makes scans of them."""
@@ -194,7 +194,7 @@ class LiveVehicle:
         mission = self._list(raw)
         composed = compose(raw, mission, 0, aboard.frame)
         wire: tuple[RawItem, ...] = aboard.rules.wire(composed.items, aboard.home)
-        self._ask(
+        self.request(
             aboard.session.upload(wire, aboard.rules.first_item), f"take the mission of {len(wire)} items"
         )
         self._take(raw, mission, composed)
@@ -212,7 +212,17 @@ class LiveVehicle:
         LinkError
             If it has none, or does not give it.
         """
-        self._adopt(self._ask(self.aboard.session.ask(Ask.DOWNLOAD), "give its mission", 10.0))
+        self._adopt(self.request(self.aboard.session.ask(Ask.DOWNLOAD), "give its mission", 10.0))
+
+    def has_mission(self, raw: RawMission) -> bool:
+        """True if the vehicle flies to the same places in the same order, a take-off before them apart."""
+        now = self._loaded().composed
+        places = [now.items[i] for i, entry in enumerate(now.entries) if entry is not None]
+        wanted = [raw.items[i] for i in raw.flown_to]
+        more = len(places) - len(wanted)
+        begin = more if more > 0 and all(item.command in TAKE_OFFS for item in places[:more]) else 0
+        there = places[begin:]
+        return len(there) == len(wanted) and all(map(RawItem.same_place, there, wanted))
 
     def start_mission(self) -> None:
         """Start, or resume after a pause, at the current item."""
@@ -227,7 +237,7 @@ class LiveVehicle:
 
     def set_speed(self, airspeed: float) -> None:
         """Fly at another airspeed [m/s] from now on."""
-        self._ask(self.aboard.session.ask(Ask.SPEED, airspeed), f"fly at {airspeed:g} m/s")
+        self.request(self.aboard.session.ask(Ask.SPEED, airspeed), f"fly at {airspeed:g} m/s")
 
     def set_current_mission_item(self, index: int) -> None:
         """Fly to waypoint `index` of the mission as it is now.
@@ -299,6 +309,21 @@ class LiveVehicle:
                 return False
             self.pump(SLOWEST_POLL)
         return True
+
+    def request(self, token: int, words: str, timeout: float = 10.0) -> Reply:
+        """Wait for the outcome of a request to the session; `words` say what the vehicle is to do.
+
+        Raises
+        ------
+        LinkError
+            If it does not do so.
+        """
+        self._waited[token] = None
+        self.wait_for(lambda: self._waited[token] is not None, timeout)
+        reply = self._waited.pop(token) or NOT_ANSWERED
+        if not reply.ok:
+            raise LinkError(f"the vehicle did not {words} ({reply.why})")
+        return reply
 
     def close(self) -> None:
         """End the connection; the vehicle flies on as it does."""
@@ -417,24 +442,15 @@ class LiveVehicle:
             self.aboard.tell("alarm" if self.touch else "info", text)
 
     def _select(self, item: int) -> None:
-        self._ask(self.aboard.session.ask(Ask.SELECT, item), f"fly to item {item}")
+        self.request(self.aboard.session.ask(Ask.SELECT, item), f"fly to item {item}")
         self._route = None
 
     def _command(self, ask: Ask, mode: Mode, words: str) -> None:
         """Change the mode, and wait until it is seen."""
         self.watch.expect(mode, self.aboard.mode)
-        self._ask(self.aboard.session.ask(ask), words)
+        self.request(self.aboard.session.ask(ask), words)
         if not self.wait_for(lambda: self.aboard.mode is mode, 5.0):
             raise LinkError(f"the vehicle agreed to {words}, but is in mode {self.aboard.mode_name}")
-
-    def _ask(self, token: int, words: str, timeout: float = 10.0) -> Reply:
-        """Wait for the outcome of a request; `words` say what the vehicle is to do."""
-        self._waited[token] = None
-        self.wait_for(lambda: self._waited[token] is not None, timeout)
-        reply = self._waited.pop(token) or NOT_ANSWERED
-        if not reply.ok:
-            raise LinkError(f"the vehicle did not {words} ({reply.why})")
-        return reply
 
 
 def _same(items: tuple[RawItem, ...], others: tuple[RawItem, ...]) -> bool:

@@ -154,6 +154,11 @@ class Autopilot:
         """Put a mission in the memory, as if it had been there at power-on; home goes in by itself."""
         self._store((self.home(), *items) if self.flavour.home_item else tuple(items))
 
+    def load_areas(self, fence: Sequence[WireItem], rally: Sequence[WireItem]) -> None:
+        """Put a geofence and rally points in the memory, as if they had been there at power-on."""
+        self._missions.store(mavlink.MAV_MISSION_TYPE_FENCE, fence)
+        self._missions.store(mavlink.MAV_MISSION_TYPE_RALLY, rally)
+
     def restart(self) -> None:
         """Switch off and on again: the clock begins at 0, the mode is the first, the mission is kept."""
         self.aircraft.clock = 0.0

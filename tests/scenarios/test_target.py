@@ -11,7 +11,14 @@ import pytest
 from scenarios.errors import RunDirectoryError
 from scenarios.load import load
 from scenarios.record import write_run
-from scenarios.target import FILES_OF_A_PLANT, FILES_OF_A_RUN, check_target, free_directory, is_run
+from scenarios.target import (
+    FILE_OF_A_LINK,
+    FILES_OF_A_PLANT,
+    FILES_OF_A_RUN,
+    check_target,
+    free_directory,
+    is_run,
+)
 from tests.scenarios.flights import encounter
 
 
@@ -50,7 +57,7 @@ def test_a_run_with_anything_beside_it_is_left_alone(run_directory, tmp_path, ex
 
 def test_every_file_that_is_written_belongs_to_a_run(run_directory):
     written = {file.name for file in run_directory.iterdir()}
-    assert written | {"report.html", *FILES_OF_A_PLANT} == FILES_OF_A_RUN
+    assert written | {"report.html", FILE_OF_A_LINK, *FILES_OF_A_PLANT} == FILES_OF_A_RUN
 
 
 @pytest.mark.parametrize("length", [200, 255])

@@ -59,6 +59,20 @@ def test_the_late_failure_of_an_attempt_is_not_held_against_the_next():
     assert run.work(telemetry) is EditAction.WAIT
 
 
+def test_an_upload_that_mavsdk_is_too_busy_for_is_sent_again_in_the_same_attempt():
+    link, run, telemetry = begun()
+    link.now = 3.5
+    assert run.work(telemetry) is EditAction.SEND
+    run.reply(Reply(Ask.UPLOAD, 3, ok=False, why="BUSY"))
+    assert run.work(telemetry) is EditAction.WAIT
+    assert link.asked[2:] == [Ask.UPLOAD]
+    link.now = 3.6
+    assert run.work(telemetry) is EditAction.WAIT
+    assert link.asked[2:] == [Ask.UPLOAD, Ask.UPLOAD]
+    run.reply(Reply(Ask.UPLOAD, 4, ok=True))
+    assert run.work(telemetry) is EditAction.SELECT
+
+
 def test_a_refusal_of_the_attempt_under_way_counts_at_once():
     link, run, telemetry = begun()
     run.reply(Reply(Ask.SELECT, 2, ok=False, why="DENIED"))
