@@ -11,7 +11,7 @@ import numpy as np
 from avoidance.geofence import FENCE, Geofence, Walls
 from avoidance.parameters import Parameters
 from avoidance.picture import Picture
-from avoidance.prediction import DETOUR_HORIZON, LARGEST_DOUBT, Intruders, route_separation
+from avoidance.prediction import DETOUR_HORIZON, Intruders, route_separation
 from avoidance.types import Bools, Floats, Ints, Ownship, Performance, Route
 
 ALTITUDE_TOLERANCE = 15.0
@@ -168,13 +168,20 @@ def _traffic(
         band=(min(flown) - ALTITUDE_TOLERANCE, max(flown) + ALTITUDE_TOLERANCE),
         margin=parameters.moving_margin,
     ).after(max(own.time - picture.time, 0.0))
-    if count:
-        here, ahead = (own.north, own.east), (RUN * own.velocity_north, RUN * own.velocity_east)
-        run = np.array([[here, (here[0] + ahead[0], here[1] + ahead[1])]])
-        nearest = route_separation(run, max(own.ground_speed, 1.0), intruders)[0]
-        wanted = intruders.radii + intruders.margin + LARGEST_DOUBT
-        intruders = replace(intruders, most=np.where(nearest < wanted, nearest - 1.0, math.inf))
-    return {"intruder_ids": picture.ids[moving], "intruders": intruders}
+    return {"intruder_ids": picture.ids[moving], "intruders": _keeping_what_can_be_kept(intruders, own)}
+
+
+def _keeping_what_can_be_kept(intruders: Intruders, own: Ownship) -> Intruders:
+    """The same, asking no more distance than is left after what is flown before a turn takes effect."""
+    wanted = intruders.most_needed
+    north, east = (intruders.positions - (own.north, own.east)).T
+    speeds = np.hypot(*intruders.velocities.T) + own.ground_speed
+    if (np.hypot(north, east) > wanted + RUN * speeds).all():
+        return intruders
+    here, ahead = (own.north, own.east), (RUN * own.velocity_north, RUN * own.velocity_east)
+    run = np.array([[here, (here[0] + ahead[0], here[1] + ahead[1])]])
+    nearest = route_separation(run, max(own.ground_speed, 1.0), intruders)[0]
+    return replace(intruders, most=np.where(nearest < wanted, nearest - 1.0, math.inf))
 
 
 def within_fence(known: Known, fence: Geofence, own: Ownship, parameters: Parameters) -> Known:

@@ -78,7 +78,7 @@ class Parameters:
     """Lateral guidance law the vehicle is to fly."""
     moving_radius: float = 1000.0
     """d: entering this distance from a moving obstacle is a violation."""
-    moving_margin: float = 100.0
+    moving_margin: float = 30.0
     """h: kept on top of d, and on top of the doubt about a prediction."""
     wrong_side: float = 150.0
     """A detour that leaves on its right who has the right of way must be shorter by this [m]."""

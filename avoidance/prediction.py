@@ -9,8 +9,10 @@ import numpy as np
 
 from avoidance.types import Bools, Floats
 
-LARGEST_DOUBT = 400.0
-"""An uncertain prediction adds no more than this to what is kept [m]."""
+SIGMAS = 1.5
+"""A new route keeps this many standard deviations of a prediction beyond d + h."""
+LARGEST_DOUBT = 300.0
+"""No prediction is taken to be less certain than this: else nothing would ever be decided [m]."""
 CONFLICT_HORIZON = 800.0
 """A closest approach later than this is no conflict yet [s]."""
 DETOUR_HORIZON = 1000.0
@@ -76,9 +78,14 @@ class Intruders:
         spread = np.sqrt(self.sigma**2 + (self.speed_sigma * times) ** 2)
         return np.asarray(np.minimum(spread, LARGEST_DOUBT))
 
+    @property
+    def most_needed(self) -> Floats:
+        """What a new route keeps at most from each, however little is known of it, shape (q,) [m]."""
+        return self.radii + self.margin + SIGMAS * LARGEST_DOUBT
+
     def needed(self, times: Floats) -> Floats:
         """What a new route keeps from each that is nearest after `times`, shape (..., q) [m]."""
-        return np.asarray(np.minimum(self.radii + self.margin + self.doubt(times), self.most))
+        return np.asarray(np.minimum(self.radii + self.margin + SIGMAS * self.doubt(times), self.most))
 
 
 def leg_approaches(
