@@ -13,7 +13,7 @@ from avoidance.contingency import first_trap, orbit_from_here
 from avoidance.escape import Escape
 from avoidance.geofence import OPEN, Geofence
 from avoidance.holding import hold_on, holding_words, skipped
-from avoidance.known import Known, keep_what_can_be_kept, known_obstacles, within_fence
+from avoidance.known import Known, keep_what_can_be_kept, kept_margin, known_obstacles, within_fence
 from avoidance.ladder import Way, way_round
 from avoidance.parameters import DEFAULT, Parameters
 from avoidance.passages import Gap, way_with_orbits
@@ -86,6 +86,7 @@ class Agent:
         geofence: Geofence = OPEN,
         rally: Sequence[Waypoint] = (),
     ) -> None:
+        parameters = replace(parameters, margin=kept_margin(parameters, performance))
         self._performance = performance
         self._parameters = parameters
         self._rng = np.random.default_rng(0) if rng is None else rng

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from avoidance.flown import SEQUENCING_DELAY
+from avoidance.flown import SEQUENCING_DELAY, late_turn
 from avoidance.geofence import FENCE, Walls
 from avoidance.geometry import distances, segments_clearance
 from avoidance.known import Circles, Known
@@ -185,13 +185,15 @@ def _corner_room(points: Floats, course: float, performance: Performance) -> Flo
     """How much further an orbit may lie from where it is looked for, before and after each leg, (k, 2) [m].
 
     In a corner the vehicle is off the legs and flies neither's direction. Up to 90 degrees it stays within
-    the triangle of entry, waypoint and exit; beyond, within three turn radii.
+    the triangle of entry, waypoint and exit, or overshoots the new leg; beyond, within three turn radii.
     """
     steps = np.diff(points, axis=0)
     courses = np.concatenate([[course], np.arctan2(steps[:, 1], steps[:, 0])])
     turn = np.abs(np.mod(np.diff(courses) + math.pi, math.tau) - math.pi)
     run = performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
-    off = np.where(turn <= 0.5 * math.pi, run * np.sin(0.5 * turn), 3.0 * performance.turn_radius)
+    late = late_turn(np.minimum(turn, 0.5 * math.pi), performance) * np.sin(turn)
+    gentle = np.maximum(run * np.sin(0.5 * turn), late)
+    off = np.where(turn <= 0.5 * math.pi, gentle, 3.0 * performance.turn_radius)
     swung = 2.0 * np.sin(0.5 * turn) * math.hypot(TIGHT * performance.turn_radius, _lead(performance))
     room = np.concatenate([off + swung, [0.0]])
     return np.stack([room[:-1], room[1:]], axis=1)

@@ -16,6 +16,8 @@ from avoidance.types import Complexes, Floats, Performance
 
 EITHER_SIDE = math.radians(10.0)
 """Within this of a reversal a turn may go either way [rad]."""
+STRAIGHT = 1e-3
+"""A change of course that is none [rad]."""
 SEQUENCING_DELAY = 1.0
 """A vehicle notices that it has reached a waypoint within this time [s]."""
 
@@ -45,7 +47,8 @@ def flown_segments(
     Notes
     -----
     At a corner of up to 90 degrees the vehicle turns inside the triangle of entry point, waypoint and exit
-    point, so the chord is added to the two legs. At a sharper one it flies the turning circle beside the
+    point, so the chord is added to the two legs; if it reaches the waypoint too late for that, it overshoots
+    the new leg and comes back to it from outside. At a sharper one it flies the turning circle beside the
     end of the incoming leg, and from there to the exit point. After a change of target the turn begins
     where the vehicle is: it runs on by R tan(dchi/2) plus the roll distance and joins the leg from outside.
     """
@@ -62,6 +65,10 @@ def flown_segments(
         capture = np.minimum(performance.capture_distance, lengths[:, 1:])
         ends.append(corners[:, 1:-1] + capture * units[:, 1:])
         extra.append(room)
+        outside = _overshoot(corners[:, 1:-1], units, capture, performance)
+        starts.append(outside[0])
+        ends.append(corners[:, 1:-1] + capture * units[:, 1:])
+        extra.append(outside[1])
     if course is not None:
         first = _first_turn(corners[:, :1], units[:, :1], lengths[:, :1], course, performance)
         starts.append(first[0])
@@ -72,6 +79,43 @@ def flown_segments(
         _as_pairs(np.concatenate(ends, axis=1)),
         np.concatenate(extra, axis=1),
     )
+
+
+def late_turn(turn: Floats, performance: Performance) -> Floats:
+    """How far behind a waypoint the new leg's course is taken, for the latest turn there may be [m].
+
+    Parameters
+    ----------
+    turn : array
+        Change of course at the waypoint, up to 90 degrees [rad].
+    performance : Performance
+        Acceptance radius, turn radius and roll time.
+
+    Returns
+    -------
+    array
+        Where the tangents at both ends of the turn meet, beyond the waypoint along the old leg; 0 if before.
+    """
+    speed = performance.airspeed + performance.wind_bound
+    late = speed * (SEQUENCING_DELAY + 0.5 * performance.roll_time) - performance.acceptance_radius
+    late += performance.turn_radius * np.tan(0.5 * turn)
+    return np.asarray(np.where(turn > STRAIGHT, np.maximum(late, 0.0), 0.0))
+
+
+def _overshoot(
+    corners: Complexes, units: Complexes, capture: Floats, performance: Performance
+) -> tuple[Complexes, Floats]:
+    """Where the tangents of the latest turn at each corner meet, and the room about the way back to the leg.
+
+    The turn touches the line from there that is parallel to the new leg, and at most so far along it as it
+    is wide; then the vehicle is led back to the leg.
+    """
+    turn = np.abs(np.angle(np.conj(units[:, :-1]) * units[:, 1:]))
+    turn = np.where(turn <= 0.5 * math.pi, turn, 0.0)  # sharper corners have a room of their own
+    late = late_turn(turn, performance)
+    aside = late * np.sin(turn)
+    bulge = performance.turn_radius * np.tan(0.5 * turn) * aside / np.maximum(capture, 1.0)
+    return corners + late * units[:, :-1], np.minimum(bulge, aside)
 
 
 def as_complex(points: Floats) -> Complexes:
@@ -127,7 +171,7 @@ def _first_turn(
     angle = np.abs(np.angle(product))
     reach = performance.turn_radius * np.tan(0.5 * np.where(sharp, 0.0, angle))
     reach += delay + performance.airspeed * performance.roll_time
-    turn = start + np.where(angle < 1e-3, 0.0, reach) * ahead
+    turn = start + np.where(angle < STRAIGHT, 0.0, reach) * ahead
     joins = np.where(sharp, start, turn) + np.minimum(performance.capture_distance, length) * unit
     return (
         np.concatenate([start, np.where(sharp, begin, turn)], axis=1),

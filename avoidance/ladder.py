@@ -36,15 +36,17 @@ RUNGS: tuple[tuple[Rung, frozenset[str]], ...] = (
 Corners: TypeAlias = tuple[tuple[float, float], ...]
 """Waypoints in order, north and east [m]."""
 
-LARGEST_CORNER = math.radians(40.0)
+LARGEST_CORNER = math.radians(15.0)
 """Heading change of a corner of an exact route [rad]."""
 
 ROOM_LEFT = 50.0
 """A separation from an intruder is worth a change of route if it is better by this [m]."""
 
-LONG_WAY = 4.0
-"""Round several intruders, two waypoints are tried as well where one costs more than so many times what a
-relaxation must be worth."""
+IN_TRAFFIC = 150.0
+"""With intruders about, no plan gives way to one that is shorter by less than this [m]."""
+LONG_WAY = 600.0
+"""Round several intruders, two waypoints are tried as well where one is longer than the straight way by more
+than this [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,24 +91,33 @@ def way_round(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None
 
 def _cheapest(problem: WaypointProblem, plan: Plan, rng: np.random.Generator) -> Plan:
     """The plan, or one further down the ladder if that is much shorter."""
-    worth = problem.parameters.worth_relaxing
+    relaxing, several = _worth(problem)
     length = _length(problem, plan.waypoints)
-    if length - math.dist(problem.start, problem.target) < worth:
+    straight = math.dist(problem.start, problem.target)
+    if length - straight < relaxing:
         return plan
-    if len(problem.intruders) > 1 and length - math.dist(problem.start, problem.target) > LONG_WAY * worth:
+    if len(problem.intruders) > 1 and length - straight > LONG_WAY:
         route, lacking = _through_traffic(problem, rng)
-        if route is not None and lacking <= 0.0 and _length(problem, route) < length - worth:
+        if route is not None and lacking <= 0.0 and _length(problem, route) < length - several:
             return Plan(Rung.ROUTE, route, plan.search)
     route = _kept_from_intruders(problem, exact_route(problem))
-    if not route or _length(problem, route) > length - worth:
+    if not route or _length(problem, route) > length - relaxing:
         return plan
     if plan.rung is not Rung.CLOSE:
         search = search_waypoint(replace(problem, relaxed=RUNGS[-1][1]), rng)
-        if search.found is not None and _length(problem, (search.found,)) < length - worth:
+        if search.found is not None and _length(problem, (search.found,)) < length - relaxing:
             plan = Plan(Rung.CLOSE, (search.found,), search)
-    if _length(problem, route) < _length(problem, plan.waypoints) - worth:
+    if _length(problem, route) < _length(problem, plan.waypoints) - several:
         return Plan(Rung.ROUTE, route, plan.search)
     return plan
+
+
+def _worth(problem: WaypointProblem) -> tuple[float, float]:
+    """By how much a nearer waypoint, and a route of several, must be shorter to be preferred [m]."""
+    p = problem.parameters
+    if not len(problem.intruders):
+        return p.worth_relaxing, p.worth_route
+    return max(p.worth_relaxing, IN_TRAFFIC), max(p.worth_route, IN_TRAFFIC)
 
 
 def widest_way(problem: WaypointProblem, rng: np.random.Generator, lacking: float = math.inf) -> Plan | None:

@@ -45,8 +45,9 @@ class Parameters:
     """New waypoints keep RS + tolerance (g1, Eq. 7)."""
     search_limit: float = 4000.0
     """New waypoints lie within this distance of what they avoid (g2, Eq. 8)."""
-    margin: float = 50.0
-    """The flown curve keeps RS + margin from every known obstacle (g3)."""
+    margin: float = 25.0
+    """The flown curve keeps RS + margin from every known obstacle (g3), more if the vehicle needs more
+    (`avoidance.known.kept_margin`)."""
     hysteresis: float = 10.0
     """A route is left alone until it comes this much nearer than RS + margin."""
     turn_limit: float | None = None
@@ -86,8 +87,11 @@ class Parameters:
     """Moving obstacles further away than this are watched, not avoided."""
     predict: bool = True
     """Moving obstacles are extrapolated; else their present position is taken as a stationary one."""
-    worth_relaxing: float = 150.0
-    """A waypoint gives way to one nearer the obstacles, or to a route, that is shorter by more than this."""
+    worth_relaxing: float = 20.0
+    """A waypoint that keeps the tolerance (g1) gives way to one nearer the obstacles that is shorter by more
+    than this."""
+    worth_route: float = 60.0
+    """A single waypoint gives way to a route of several that is shorter by more than this."""
     optimiser: str = "pso"
     """Name of the planner of single waypoints."""
     swarm: SwarmSettings = field(default_factory=SwarmSettings)
@@ -113,6 +117,7 @@ PAPER = Parameters(
     reaction_distance=8000.0,
     predict=False,
     worth_relaxing=math.inf,
+    worth_route=math.inf,
     pop_up_room=None,
     swarm=SwarmSettings(
         particles=10,

@@ -188,7 +188,7 @@ def _leg_of_segment(corners: int, inserted: int) -> Ints:
     """Which leg each of the segments of `flown_segments` belongs to."""
     legs = np.arange(corners - 1)
     bends = np.arange(1, corners - 1)
-    owner = np.concatenate([legs, bends, [0, 0]]) - inserted
+    owner = np.concatenate([legs, bends, bends, [0, 0]]) - inserted
     return np.asarray(np.maximum(owner, 0))
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from avoidance import Hold, Performance
 from avoidance.geofence import Walls
-from avoidance.known import ALTITUDE_TOLERANCE
+from avoidance.known import ALTITUDE_TOLERANCE, kept_margin
 from avoidance.parameters import Parameters
 from avoidance.tangent_graph import shortest_path
 from avoidance.types import Floats
@@ -210,7 +210,7 @@ def replacement_rule(parameters: Parameters, performance: Performance) -> Replac
     replaces what lies inside the sphere, by a point at RS + tolerance. Both keep their altitude within
     `ALTITUDE_TOLERANCE`.
     """
-    margin = max(parameters.margin, performance.tracking_error)
+    margin = kept_margin(parameters, performance)
     turn = performance.turn_room
     if parameters.all_obstacles:
         return ReplacementRule(margin, turn, (turn, 0.5 * turn), ALTITUDE_TOLERANCE)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -20,10 +21,26 @@ def test_a_straight_route_is_its_own_hull() -> None:
 def test_a_gentle_corner_adds_its_chord() -> None:
     route = np.array([[[0.0, 0.0], [1000.0, 0.0], [2000.0, 500.0]]])
     starts, ends, extra = flown_segments(route, None, PERFORMANCE)
-    assert starts.shape == (1, 3, 2)
+    assert starts.shape == (1, 4, 2)
     assert starts[0, 2].tolist() == [885.0, 0.0]  # acceptance radius and one second before the waypoint
     assert ends[0, 2, 1] > 0.0
     assert extra.max() == 0.0
+    assert starts[0, 3].tolist() == [1000.0, 0.0]  # the turn begins in time: nothing is overshot
+
+
+def test_a_turn_that_begins_late_overshoots_the_new_leg() -> None:
+    late = replace(PERFORMANCE, acceptance_radius=20.0, wind_bound=8.0)
+    route = np.array([[[0.0, 0.0], [1000.0, 0.0], [1000.0, 1000.0]]])  # north, then a right angle to the east
+    starts, ends, extra = flown_segments(route, None, late)
+    begin = 1000.0 - 20.0 + 1.5 * 23.0  # one second late, and half the time to roll
+    assert starts[0, 3].tolist() == pytest.approx([begin + late.turn_radius, 0.0])
+    angle = np.linspace(0.0, math.pi / 2, 20)
+    turn = np.stack(
+        [begin + late.turn_radius * np.sin(angle), late.turn_radius * (1 - np.cos(angle))], axis=1
+    )
+    along = (ends[0, 3] - starts[0, 3]) / np.hypot(*(ends[0, 3] - starts[0, 3]))
+    outside = (turn - starts[0, 3]) @ np.array([along[1], -along[0]])  # positive to the north of the line
+    assert outside.max() <= extra[0, 3]
 
 
 def test_a_reversal_needs_two_turn_radii_to_the_side() -> None:

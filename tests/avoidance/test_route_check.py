@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from avoidance import Ownship, RadarScan, Route
-from avoidance.known import Known, keep_what_can_be_kept, known_obstacles
+from avoidance.known import Known, keep_what_can_be_kept, kept_margin, known_obstacles
 from avoidance.parameters import DEFAULT
 from avoidance.route_check import first_blocked_leg
 from avoidance.tracking import Tracker
@@ -68,3 +70,11 @@ def test_circles_shrink_where_the_margin_cannot_be_kept_any_more() -> None:
     own, way = ownship(), route((40_000.0, 0.0))
     near = keep_what_can_be_kept(known([(0.0, 1020.0)], own, way), own, PERFORMANCE).circles(200.0, 200.0)
     assert near.keep[0] == pytest.approx(1019.0)
+
+
+@pytest.mark.parametrize(
+    ("error", "wind", "kept"), [(5.0, 0.0, 25.0), (10.0, 12.0, 0.4 * 128.7), (30.0, 0.0, 40.0)]
+)
+def test_the_margin_grows_with_turn_radius_and_tracking_error(error: float, wind: float, kept: float) -> None:
+    vehicle = replace(PERFORMANCE, tracking_error=error, wind_bound=wind)
+    assert kept_margin(DEFAULT, vehicle) == pytest.approx(kept, abs=0.1)
