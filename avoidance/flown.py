@@ -97,8 +97,8 @@ def late_turn(turn: Floats, performance: Performance) -> Floats:
         Where the tangents at both ends of the turn meet, beyond the waypoint along the old leg; 0 if before.
     """
     speed = performance.airspeed + performance.wind_bound
-    late = speed * (SEQUENCING_DELAY + 0.5 * performance.roll_time) - performance.acceptance_radius
-    late += performance.turn_radius * np.tan(0.5 * turn)
+    begin = speed * (SEQUENCING_DELAY + 0.5 * performance.roll_time) - performance.acceptance_radius
+    late = begin + performance.turn_radius * np.tan(0.5 * turn)
     return np.asarray(np.where(turn > STRAIGHT, np.maximum(late, 0.0), 0.0))
 
 
