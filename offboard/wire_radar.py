@@ -15,6 +15,7 @@ from offboard.frames import MapFrame
 from offboard.link import VehicleState
 from offboard.live.messages import Message
 from offboard.live.telemetry import Attitude, Fix, Telemetry
+from offboard.own_echo import OwnEcho
 from offboard.sightings import Sighting, Sightings
 
 RADAR_KEEPS = 2.5
@@ -52,6 +53,10 @@ class WireRadar:
         range.
     alarm : callable
         Called with a text where there is no position to make a return of.
+    own_address : int
+        ICAO address of the vehicle's own transponder, 0 if unknown: its echo is no traffic.
+    note : callable, optional
+        Called with a text when an echo of the vehicle itself has been found among the traffic.
     """
 
     def __init__(
@@ -60,6 +65,9 @@ class WireRadar:
         clock: Callable[[float], float],
         safety_radius: float,
         alarm: Callable[[str], None],
+        *,
+        own_address: int = 0,
+        note: Callable[[str], None] | None = None,
     ) -> None:
         self._frame = frame
         self._clock = clock
@@ -69,6 +77,8 @@ class WireRadar:
         self._traffic = Sightings(TRAFFIC_KEEPS)
         self._unnamed = FIRST_UNNAMED
         self._told: set[str] = set()
+        self._echo = OwnEcho(own_address)
+        self._note = note
         self.heard = 0
         """Messages that became returns."""
 
@@ -113,19 +123,33 @@ class WireRadar:
         climb = message.number("ver_velocity") / 100.0 if flags & VERTICAL_VELOCITY_VALID else 0.0
         age = max(message.number("tslc"), 0.0)
         north, east = self._frame.to_map(latitude_deg, longitude_deg)
-        self.heard += 1
-        self._traffic.put(
-            Sighting(
-                message.whole("ICAO_address"),
-                north,
-                east,
-                altitude,
-                self._clock(fix.time) - age,
-                speed * math.cos(course) if flags & VALID_HEADING else 0.0,
-                speed * math.sin(course) if flags & VALID_HEADING else 0.0,
-                climb,
-            )
+        report = Sighting(
+            message.whole("ICAO_address"),
+            north,
+            east,
+            altitude,
+            self._clock(fix.time) - age,
+            speed * math.cos(course) if flags & VALID_HEADING else 0.0,
+            speed * math.sin(course) if flags & VALID_HEADING else 0.0,
+            climb,
         )
+        if self._is_own(report, fix):
+            return
+        self.heard += 1
+        self._traffic.put(report)
+
+    def _is_own(self, report: Sighting, fix: Fix) -> bool:
+        """True for an echo of the vehicle itself; told once."""
+        north, east = self._frame.to_map(fix.latitude_deg, fix.longitude_deg)
+        time = self._clock(fix.time)
+        own = Sighting(0, north, east, fix.altitude, time, fix.velocity_north, fix.velocity_east)
+        if not self._echo.holds(report, own):
+            return False
+        text = f"ADSB_VEHICLE {report.id:06X} is this vehicle itself: it is not taken for traffic"
+        if self._note is not None and self._echo.sure(report.id) and text not in self._told:
+            self._told.add(text)
+            self._note(text)
+        return True
 
     def _obstacle(self, message: Message, telemetry: Telemetry, fix: Fix) -> None:
         offset = tuple(message.number(key) for key in ("x", "y", "z"))

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from offboard.frames import MapFrame
+from offboard.live.limits import OWN_ADDRESS
 from offboard.mission_files import read_mission_file
 from offboard.raw_mission import RawMission
 from offboard.udp_radar import UdpRadar
@@ -77,6 +78,8 @@ class SourceChoice:
                 aboard.clock.ours,
                 parameters.safety_radius,
                 lambda text: aboard.tell("alarm", text),
+                own_address=int(aboard.parameters.get(OWN_ADDRESS, 0)),
+                note=lambda text: aboard.tell("info", text),
             )
             vehicle.on_obstacle = wire.take
 

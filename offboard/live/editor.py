@@ -25,6 +25,8 @@ COME_BACK = 5.0
 """After a fall-back the mission is sent again so often [s, wall clock]."""
 EXPECTED_EDIT = 0.3
 """An edit takes about this long; where the vehicle will be then is put before the new item [s]."""
+ELSEWHERE = 30.0
+"""A vehicle that shows a target this far from the one we sent it to has been sent there by others [m]."""
 COMPLETE = 5
 """MISSION_STATE at the end."""
 
@@ -66,9 +68,12 @@ class Editor:
         self._checked_again = False
         self._back_at = math.inf
         self._goto = -1
+        self._fallback_place: Waypoint | None = None
+        self._fallback_seen = False
         self._mission_id = 0
         self._wanted_mission: MissionList | None = None
         self._wanted_current = 0
+        self._wanted_hold: Orbit | None = None
 
     @property
     def latest(self) -> OnBoard | None:
@@ -148,7 +153,14 @@ class Editor:
         return shown.mission_id != self._mission_id
 
     def change(self, mission: MissionList, current: int, hold: Orbit | None, *, start: bool = False) -> None:
-        """Begin an edit; one under way is given up for it."""
+        """Begin an edit; one under way is given up for it.
+
+        After a fall-back it waits until the mission is tried again: a vehicle that refuses is not asked
+        once a second, and whoever takes it out of the fall-back is noticed.
+        """
+        if self.fallen_back and self._run is None and self._aboard.session.wall() < self._back_at:
+            self._wanted_mission, self._wanted_current, self._wanted_hold = mission, current, hold
+            return
         raw = self._loaded()
         aboard = self._aboard
         own = aboard.ownship()
@@ -195,10 +207,20 @@ class Editor:
                 self._confirmed()
             elif action is EditAction.FALL_BACK:
                 self._fall_back()
+        elif self.fallen_back and self._sent_elsewhere():
+            self.give_up()
+            self._watch.taken()
+            self._aboard.tell(
+                "alarm",
+                "someone else has sent the vehicle to another place than we did; nothing is commanded until "
+                "the mission mode is back",
+            )
         elif self.fallen_back and self._aboard.session.wall() >= self._back_at:
             now = self.latest
             if now is not None:
-                self.change(self._wanted_mission or now.mission, self._wanted_current, now.hold, start=True)
+                self.change(
+                    self._wanted_mission or now.mission, self._wanted_current, self._wanted_hold, start=True
+                )
         elif self._check is not None:
             self._look_at_track()
 
@@ -282,6 +304,20 @@ class Editor:
             self._checked_again = True
             self.change(shown.mission, current, shown.hold)
 
+    def _sent_elsewhere(self) -> bool:
+        """True if the vehicle, in the mode of our fall-back, has left the place of it for another.
+
+        The mode alone does not tell: a human who chooses PX4's Hold finds the vehicle in Hold. The ground
+        stations do it by sending it to where it is.
+        """
+        place, shown = self._fallback_place, self._aboard.telemetry.target
+        if place is None or shown is None or self._aboard.mode is not self._aboard.rules.goto_mode:
+            return False
+        north, east = self._aboard.frame.to_map(shown.latitude_deg, shown.longitude_deg)
+        there = math.hypot(north - place.north, east - place.east) <= ELSEWHERE
+        self._fallback_seen = self._fallback_seen or there
+        return self._fallback_seen and not there
+
     def _fall_back(self) -> None:
         """An edit could not be made: circle where its first waypoint is to be, and try again from there."""
         run, aboard = self._run, self._aboard
@@ -295,6 +331,7 @@ class Editor:
             "alarm", f"the vehicle {words} an edit of its mission; it is sent to the new waypoint instead"
         )
         self._wanted_mission, self._wanted_current = wanted.mission, wanted.current
+        self._wanted_hold = wanted.hold
         self._back_at = aboard.session.wall() + COME_BACK
         goal = wanted.target
         latitude_deg, longitude_deg = aboard.frame.to_geodetic(goal.north, goal.east)
@@ -302,6 +339,7 @@ class Editor:
         if wanted.hold is not None:
             radius = wanted.hold.radius * wanted.hold.direction
         self._watch.expect(aboard.rules.goto_mode, aboard.mode)
+        self._fallback_place, self._fallback_seen = goal, False
         absolute = goal.altitude + aboard.home.altitude_m
         self._goto = aboard.session.ask(Ask.GOTO, latitude_deg, longitude_deg, absolute, radius)
 

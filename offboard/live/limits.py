@@ -14,9 +14,11 @@ ROLL_TIME = 1.0
 """Time that a bank takes to be reached; no parameter of either autopilot says it [s]."""
 TRACKING_ERROR = 15.0
 """How far from a straight leg autopilots stay once it is captured, gusts included [m]."""
+OWN_ADDRESS = "ADSB_ICAO_ID"
+"""Parameter of both autopilots: ICAO address of the own transponder."""
 EXTRA = {
-    "PX4": ("MIS_TKO_LAND_REQ", "NAV_LOITER_RAD", "SYS_HITL", "SYS_AUTOSTART"),
-    "ArduPilot": ("SIM_SPEEDUP", "WP_LOITER_RAD"),
+    "PX4": ("MIS_TKO_LAND_REQ", "NAV_LOITER_RAD", "SYS_HITL", "SYS_AUTOSTART", OWN_ADDRESS),
+    "ArduPilot": ("SIM_SPEEDUP", "WP_LOITER_RAD", OWN_ADDRESS),
 }
 """Parameters that are looked at beside those of the performance, by autopilot, where they exist."""
 SIMULATED_AIRFRAMES = range(10040, 10050)

@@ -70,6 +70,10 @@ class Watch:
         """We have asked for a mode; the one before it is nobody else's doing until the new one is seen."""
         self.expected, self._before = mode, before
 
+    def taken(self) -> None:
+        """Someone else flies, though the mode is one that we have asked for."""
+        self.human, self.expected, self._before = True, Mode.MISSION, None
+
     def edited(self, time: float, again: bool = False) -> None:
         """We have edited the mission, at a time of the vehicle's clock [s]; `again` after it was dropped."""
         self._edited, self.retried = time, again

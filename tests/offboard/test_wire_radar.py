@@ -165,3 +165,22 @@ def test_lines_on_a_udp_port_become_returns_until_they_are_old():
 def test_what_is_wrong_with_a_line_is_said(line, problem):
     with pytest.raises(ValueError, match=problem):
         sighting_of(line, OWN, FRAME)
+
+
+def test_our_own_transponder_is_no_traffic_and_that_is_told_once():
+    notes: list[str] = []
+    wire = WireRadar(FRAME, lambda time: time, 1000.0, notes.append, note=notes.append)
+    known = telemetry()
+    latitude, longitude = FRAME.to_geodetic(OWN.north, OWN.east)
+    fields = {
+        "ICAO_address": 0xABC123, "lat": round(latitude * 1e7), "lon": round(longitude * 1e7),
+        "altitude": 800_000, "heading": 0, "hor_velocity": 1500, "ver_velocity": 0, "flags": 15,
+    }  # fmt: skip
+    for age in (3, 2, 1, 0):
+        back = FRAME.to_geodetic(OWN.north - 15.0 * age, OWN.east)
+        place = {"lat": round(back[0] * 1e7), "lon": round(back[1] * 1e7), "tslc": age}
+        wire.take(Message("ADSB_VEHICLE", {**fields, **place}), known)
+    assert len(wire.scan(STATE, 10.0).ids) == 0
+    assert notes == ["ADSB_VEHICLE ABC123 is this vehicle itself: it is not taken for traffic"]
+    wire.take(Message("ADSB_VEHICLE", {**fields, "ICAO_address": 5, "heading": 18000, "tslc": 0}), known)
+    assert wire.scan(STATE, 10.0).ids.tolist() == [5]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from avoidance.agent import Agent
@@ -70,6 +70,11 @@ class Simulation:
         number = self.autopilot.flavour.mode_for(task).custom_mode
         self.send(mavlink.MAVLink_set_mode_message(1, 1, number))
 
+    def hold_here(self) -> None:
+        """Another ground station's button for it: DO_REPOSITION to where the vehicle is."""
+        nan = float("nan")
+        self.send(mavlink.MAVLink_command_long_message(1, 1, 192, 0, -1.0, 1.0, 0.0, nan, nan, nan, nan))
+
     def mission(self) -> tuple:
         """What is in the autopilot's memory."""
         return self.autopilot.captain.items
@@ -102,6 +107,16 @@ class Flying:
             if self.vehicle.time >= until:
                 break
         return frames
+
+    def fly_until(self, ready: Callable[[], bool], seconds: float) -> None:
+        """Fly on until something is so; an error if it is not within a while."""
+        until = self.vehicle.time + seconds
+        for _ in fly([Pilot(self.vehicle, self.radar, self.agent)], WaitingClock(self.vehicle), 1.0):
+            if ready():
+                return
+            if self.vehicle.time >= until:
+                break
+        raise AssertionError(f"not within {seconds:g} s")
 
     def said(self, severity: str) -> str:
         """All that has been told so far."""

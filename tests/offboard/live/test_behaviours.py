@@ -123,6 +123,24 @@ def test_a_refused_edit_falls_back_to_the_new_waypoint(autopilot):
     assert abs(own.course) > math.radians(2.0)  # no longer towards the obstacle
 
 
+@BOTH
+def test_a_human_who_holds_while_we_have_fallen_back_wins(autopilot):
+    with flying(autopilot, most_items=4 + (autopilot == "ardupilot")) as flight:
+        flight.fly_until(lambda: flight.vehicle.editor.fallen_back, 60.0)
+        flight.fly(2.0)
+        flight.simulation.hold_here()
+        flight.fly(30.0)
+        assert "someone else has sent the vehicle" in flight.said("alarm")
+        assert flight.vehicle.watch.human
+        edits = len(flight.vehicle.editor.records)
+        flight.fly(30.0)
+        assert len(flight.vehicle.editor.records) == edits
+        flight.simulation.set_mode(Task.MISSION)
+        flight.fly(3.0)
+    assert not flight.vehicle.watch.human
+    assert "the mission is flown again" in flight.said("info")
+
+
 def test_px4_that_drops_our_edit_to_hold_is_retried_once_then_it_is_a_humans():
     with flying("px4") as flight:
         flight.fly(20.0)
