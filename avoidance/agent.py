@@ -12,7 +12,7 @@ from avoidance.conflicts import first_conflict, to_be_avoided
 from avoidance.contingency import first_trap, orbit_from_here
 from avoidance.escape import Escape
 from avoidance.geofence import OPEN, Geofence
-from avoidance.holding import hold_on, holding_words, skipped
+from avoidance.holding import NoWay, hold_on, holding_words, skipped
 from avoidance.known import Known, keep_what_can_be_kept, kept_margin, known_obstacles, within_fence
 from avoidance.ladder import Way, way_round
 from avoidance.parameters import DEFAULT, Parameters
@@ -106,6 +106,7 @@ class Agent:
         self._version = 0
         self._holding = False
         self._retry_at = -math.inf
+        self._no_way = NoWay()
         self._rest_version = -1
         self._rest_route: Route | None = None
 
@@ -179,6 +180,8 @@ class Agent:
         if blocked.threat.moving:
             known = to_be_avoided(own, route, known, self._performance)
         gap = Gap.of(own, route, known, blocked, self._performance, self._parameters)
+        if not (blocked.threat.moving or self._holding) and self._no_way.lasts(own, route, self._version):
+            return self._wait(gap)
         way = way_with_orbits(gap, self._way, self._rng)
         if way is not None:
             self._avoiding = frozenset(blocked.threat.ids)
@@ -191,6 +194,7 @@ class Agent:
             if walled_in is not None:
                 return walled_in
         self._retry_at = own.time + RETRY
+        self._no_way = self._no_way.again(own, route, self._version)
         if self._holding and self._cut_off(gap):
             return self._hold(gap)
         if blocked.threat.moving or (gap.begin > 0 and blocked.threat.distance > LATER):

@@ -2,10 +2,44 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
+
 from avoidance.contingency import Orbit
 from avoidance.route_check import Blocked
 from avoidance.types import Hold, Ownship, Replace, Route, Rung, Waypoint
 from avoidance.words import threat_words
+
+FIRST_WAIT = 3.0
+"""A way that is not there is looked for again after this time [s] ..."""
+LONGEST_WAIT = 15.0
+"""... each time after twice as long, but no longer than this, until something new is known [s]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class NoWay:
+    """That there was no way round, and how long that is believed while the vehicle flies on."""
+
+    route: Route | None = None
+    """What was to be flown."""
+    version: int = -1
+    """Of what was known."""
+    wait: float = 0.0
+    """How long to believe it [s]."""
+    until: float = -math.inf
+    """Then it is looked for again [s]."""
+
+    def lasts(self, own: Ownship, route: Route, version: int) -> bool:
+        """True if it need not be looked for again yet."""
+        return self._same(route, version) and own.time < self.until
+
+    def again(self, own: Ownship, route: Route, version: int) -> NoWay:
+        """After another search in vain."""
+        wait = min(2.0 * self.wait, LONGEST_WAIT) if self._same(route, version) else FIRST_WAIT
+        return NoWay(route, version, wait, own.time + wait)
+
+    def _same(self, route: Route, version: int) -> bool:
+        return self.route is route and self.version == version
 
 
 def holding_words(blocked: Blocked) -> str:
