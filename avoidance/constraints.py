@@ -8,7 +8,7 @@ import numpy as np
 
 from avoidance.flown import turn_angle
 from avoidance.geometry import distances, segments_clearance, within_reach
-from avoidance.types import Floats
+from avoidance.types import Complexes, Floats
 
 
 def safe_waypoint(points: Floats, centres: Floats, required: Floats) -> Floats:
@@ -104,6 +104,22 @@ def feasible_segments(
     distance = segments_clearance(starts.reshape(-1, 2), ends.reshape(-1, 2), centres)
     shortfall = (required[None] + extra.reshape(-1, 1) - distance).max(axis=1)
     return np.asarray(np.maximum(shortfall.reshape(count, pieces).max(axis=1), 0.0))
+
+
+def line_shortfall(
+    starts: Complexes, ends: Complexes, extra: Floats, centres: Complexes, required: Floats
+) -> Floats:
+    """As `feasible_segments`, of ends of shape (n, m) and centres of shape (d,) as complex numbers [m]."""
+    along = ends - starts
+    length = np.abs(along)
+    unit = np.where(length > 0.0, along, 1.0) / np.where(length > 0.0, length, 1.0)
+    seen = np.conj(unit)[..., None] * (centres - starts[..., None])
+    ahead, across = seen.real, seen.imag
+    beyond = ahead - np.maximum(np.minimum(ahead, length[..., None]), 0.0)
+    gap = np.sqrt(across * across + beyond * beyond)
+    gap -= required
+    gap -= extra[..., None]
+    return np.asarray(np.maximum(-gap.min(axis=(1, 2)), 0.0))
 
 
 def turning_angle(

@@ -52,12 +52,19 @@ def flown_segments(
     end of the incoming leg, and from there to the exit point. After a change of target the turn begins
     where the vehicle is: it runs on by R tan(dchi/2) plus the roll distance and joins the leg from outside.
     """
-    corners = as_complex(points)
+    starts, ends, extra = flown_lines(as_complex(points), course, performance)
+    return as_pairs(starts), as_pairs(ends), extra
+
+
+def flown_lines(
+    corners: Complexes, course: float | None, performance: Performance
+) -> tuple[Complexes, Complexes, Floats]:
+    """As `flown_segments`, of corners of shape (n, k) as complex numbers, with ends of shape (n, m) [m]."""
     legs = corners[:, 1:] - corners[:, :-1]
     lengths = np.abs(legs)
     units = legs / np.maximum(lengths, 1e-9)
     starts, ends, extra = [corners[:, :-1]], [corners[:, 1:]], [np.zeros(lengths.shape)]
-    if points.shape[1] > 2:
+    if corners.shape[1] > 2:
         run = performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
         entry = corners[:, 1:-1] - np.minimum(run, lengths[:, :-1]) * units[:, :-1]
         begin, room, _ = _turn(entry, units[:, :-1], units[:, 1:], performance)
@@ -74,11 +81,7 @@ def flown_segments(
         starts.append(first[0])
         ends.append(first[1])
         extra.append(first[2])
-    return (
-        _as_pairs(np.concatenate(starts, axis=1)),
-        _as_pairs(np.concatenate(ends, axis=1)),
-        np.concatenate(extra, axis=1),
-    )
+    return np.concatenate(starts, axis=1), np.concatenate(ends, axis=1), np.concatenate(extra, axis=1)
 
 
 def late_turn(turn: Floats, performance: Performance) -> Floats:
@@ -126,7 +129,8 @@ def as_complex(points: Floats) -> Complexes:
     return np.ascontiguousarray(points).view(np.complex128)[..., 0]
 
 
-def _as_pairs(values: Complexes) -> Floats:
+def as_pairs(values: Complexes) -> Floats:
+    """The reverse of `as_complex`."""
     return np.ascontiguousarray(values)[..., None].view(np.float64)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from avoidance.types import Bools, Floats
 
-FEW = 12
+FEW = 40
 """So few centres are not worth sorting out."""
 Point: TypeAlias = Sequence[float] | Floats
 """A point as any indexable pair (north, east) [m]."""

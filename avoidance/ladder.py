@@ -100,7 +100,7 @@ def _cheapest(problem: WaypointProblem, plan: Plan, rng: np.random.Generator) ->
         route, lacking = _through_traffic(problem, rng)
         if route is not None and lacking <= 0.0 and _length(problem, route) < length - several:
             return Plan(Rung.ROUTE, route, plan.search)
-    route = _kept_from_intruders(problem, exact_route(problem))
+    route = _kept_from_intruders(problem, exact_route(problem, length - relaxing))
     if not route or _length(problem, route) > length - relaxing:
         return plan
     if plan.rung is not Rung.CLOSE:
@@ -176,8 +176,8 @@ def _kept_from_intruders(problem: WaypointProblem, route: Corners | None) -> Cor
     return route
 
 
-def exact_route(problem: WaypointProblem) -> Corners | None:
-    """Waypoints of the shortest path round everything known that can be flown, or None.
+def exact_route(problem: WaypointProblem, longest: float = math.inf) -> Corners | None:
+    """Waypoints of the shortest path round everything known that can be flown, or None if over `longest` [m].
 
     The circles are widened step by step until the flown curve, with its turns, is clear of those that must
     be kept; intruders are not considered. No waypoints at all: the straight way leads out of a margin that
@@ -191,7 +191,7 @@ def exact_route(problem: WaypointProblem) -> Corners | None:
         radii = np.minimum(np.minimum(keep + pad, free_start), free_target)
         walls = replace(problem.walls, room=problem.walls.room + pad)
         path = shortest_path(problem.start, problem.target, problem.centres, np.maximum(radii, 0.0), walls)
-        if path is None:
+        if path is None or path.length > longest:
             return None
         corners = path.polyline(LARGEST_CORNER)
         if flyable(problem, corners):

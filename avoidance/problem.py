@@ -11,18 +11,19 @@ import numpy as np
 from avoidance.constraints import (
     feasible_segments,
     flyable_turn,
+    line_shortfall,
     safe_waypoint,
     search_space,
     turning_angle,
 )
 from avoidance.cost import path_length, risk
-from avoidance.flown import SEQUENCING_DELAY, flown_segments
+from avoidance.flown import SEQUENCING_DELAY, as_complex, as_pairs, flown_lines
 from avoidance.geofence import Walls
-from avoidance.geometry import distances
+from avoidance.geometry import FEW, distances
 from avoidance.parameters import Parameters
 from avoidance.prediction import Intruders, ground_speeds, separation_shortfall
 from avoidance.right_of_way import gives_way, wrong_side
-from avoidance.types import Bools, Floats, Ints, Performance
+from avoidance.types import Bools, Complexes, Floats, Ints, Performance
 
 INFEASIBLE = 1e9
 """Added to the violation of an infeasible candidate, so that every feasible one ranks before it."""
@@ -76,14 +77,19 @@ class WaypointProblem:
 
     def constraints(self, points: Floats) -> dict[str, Floats]:
         """How far each candidate of shape (n, 2) breaks each constraint [m], shape (n,) each."""
-        p = self.parameters
         active = {"g1": self._safe_waypoint(points)}
         if "g2" not in self.relaxed:
-            active["g2"] = search_space(points, self.centres[self.avoided], p.search_limit)
-        active["g3"] = self._feasible_route(points)
+            limit = self.parameters.search_limit
+            active["g2"] = search_space(points, self.centres[self.avoided], limit)
+        return active | self._on_the_way(points)
+
+    def _on_the_way(self, points: Floats) -> dict[str, Floats]:
+        """Those of the constraints that look at the way, not at the waypoint's own place."""
+        active = {"g3": self._feasible_route(points)}
         if "g4" not in self.relaxed:
-            if p.turn_limit is not None:
-                active["g4"] = turning_angle(points, self.start, self.target, p.turn_limit)
+            limit = self.parameters.turn_limit
+            if limit is not None:
+                active["g4"] = turning_angle(points, self.start, self.target, limit)
             else:
                 active["g4"] = flyable_turn(
                     points, self.start, self.target, self.course, self.performance.turn_radius
@@ -99,6 +105,18 @@ class WaypointProblem:
             total = total + search_space(points, self.centres[self.avoided], self.parameters.search_limit)
         return total
 
+    def leg_violation(self, points: Floats) -> Floats:
+        """The least by which candidates of shape (n, 2) break g3: what their straight legs do [m], shape (n,)."""
+        if not len(self.centres) or not len(points):
+            return np.zeros(len(points))
+        onward = np.empty((len(points), 3), dtype=np.complex128)
+        onward[:, 0], onward[:, 1], onward[:, 2] = (
+            complex(*self.start),
+            as_complex(points),
+            complex(*self.target),
+        )
+        return self._line_shortfall(onward[:, :-1], onward[:, 1:], np.zeros((len(points), 2)))
+
     def violation(self, points: Floats) -> Floats:
         """Sum of the violations of candidates of shape (n, 2) [m], shape (n,); 0 where feasible."""
         total = np.zeros(len(points))
@@ -110,6 +128,11 @@ class WaypointProblem:
         """One number per candidate of shape (n, 2) by which every planner orders them, smaller is better."""
         violation = self.violation(points)
         return np.where(violation > 0.0, INFEASIBLE + violation, self.cost(points))
+
+    def rank_placed(self, points: Floats, cost: Floats) -> Floats:
+        """As `rank`, of points that are known to meet g1 and g2, at a known cost of shape (n,)."""
+        violation: Floats = sum(self._on_the_way(points).values(), np.zeros(len(points)))
+        return np.where(violation > 0.0, INFEASIBLE + violation, cost)
 
     def widened(self, room: Floats) -> WaypointProblem:
         """The same search, keeping `room`, shape (d,), more from each obstacle not nearer to its ends [m]."""
@@ -127,19 +150,27 @@ class WaypointProblem:
     def _feasible_route(self, points: Floats) -> Floats:
         if not len(self.centres) and not len(self.walls):
             return np.zeros(len(points))
-        corners = [self.start, None, self.target] if self.before is None else [self.before, self.start, None]
-        if self.before is not None:
-            corners.append(self.target)
-        route = np.empty((len(points), len(corners), 2))
-        for i, corner in enumerate(corners):
-            route[:, i] = points if corner is None else corner
-        starts, ends, extra = flown_segments(route, self.course, self.performance)
-        skip = 0 if self.before is None else 1  # the leg that leads to the start is another search's
+        before = [] if self.before is None else [complex(*self.before)]
+        known = [*before, complex(*self.start)]
+        route = np.empty((len(points), len(known) + 2), dtype=np.complex128)
+        route[:, : len(known)], route[:, -1] = known, complex(*self.target)
+        route[:, -2] = as_complex(points)
+        starts, ends, extra = flown_lines(route, self.course, self.performance)
+        skip = len(before)  # the leg that leads to the start is another search's
         starts, ends, extra = starts[:, skip:], ends[:, skip:], extra[:, skip:]
-        shortfall = feasible_segments(starts, ends, extra, self.centres, self.keep)
-        return (
-            np.maximum(shortfall, self.walls.shortfall(starts, ends, extra)) if len(self.walls) else shortfall
-        )
+        shortfall = np.zeros(len(points))
+        if len(self.centres) and len(points):
+            shortfall = self._line_shortfall(starts, ends, extra)
+        if len(self.walls):
+            shortfall = np.maximum(shortfall, self.walls.shortfall(as_pairs(starts), as_pairs(ends), extra))
+        return shortfall
+
+    def _line_shortfall(self, starts: Complexes, ends: Complexes, extra: Floats) -> Floats:
+        """Largest shortfall of lines, ends of shape (n, m), to what is kept from spheres, shape (n,) [m]."""
+        if len(self.centres) > FEW:
+            pairs = as_pairs(starts), as_pairs(ends)
+            return feasible_segments(*pairs, extra, self.centres, self.keep)
+        return line_shortfall(starts, ends, extra, as_complex(self.centres), self.keep)
 
     def separation_shortfall(self, waypoints: Sequence[Sequence[float]]) -> float:
         """How much is missing to what is to be kept from intruders on a route by these waypoints [m]."""

@@ -49,11 +49,13 @@ def refined(problem: WaypointProblem, point: Floats, rank: float, rounds: int) -
     for _ in range(rounds):
         legs = np.stack([_unit(point - start), _unit(target - point)])
         candidates = point + (STEPS[:, None, None] * (DIRECTIONS @ legs)).reshape(-1, 2)
-        candidates = candidates[problem.cost(candidates) < rank]
-        candidates = candidates[problem.waypoint_violation(candidates) <= 0.0]
-        if not len(candidates):
+        cost = problem.cost(candidates)
+        candidates, cost = candidates[cost < rank], cost[cost < rank]
+        placed = problem.waypoint_violation(candidates) <= 0.0
+        if not placed.any():
             break
-        ranks = problem.rank(candidates)
+        candidates = candidates[placed]
+        ranks = problem.rank_placed(candidates, cost[placed])
         evaluated += len(candidates)
         best = int(np.argmin(ranks))
         if ranks[best] >= rank:

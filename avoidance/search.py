@@ -77,16 +77,18 @@ def search_waypoint(problem: WaypointProblem, rng: np.random.Generator) -> Searc
     settings = parameters.swarm
     evaluations = 0
     if parameters.rule_seeds:
-        seeds, evaluations = rule_seeds(problem, settings.particles)
+        seeds, ranks, evaluations = rule_seeds(problem, settings.particles)
     else:
         seeds = sphere_seeds(problem, settings.particles, rng)
+        ranks = np.full(len(seeds), np.nan)
     optimiser = OPTIMISERS[parameters.optimiser](seeds, search_box(problem), settings, rng)
     iterations = 0
     first_feasible: int | None = None
     while not optimiser.finished:
         points = optimiser.ask()
-        optimiser.tell(problem.rank(points))
-        evaluations += len(points)
+        known = iterations == 0 and not np.isnan(ranks).any() and np.array_equal(points, seeds)
+        optimiser.tell(ranks if known else problem.rank(points))
+        evaluations += 0 if known else len(points)
         iterations += 1
         if first_feasible is None:
             if optimiser.best_cost < INFEASIBLE:

@@ -84,7 +84,7 @@ def test_the_printed_seeds_lie_outside_on_both_sides() -> None:
 
 def test_rule_seeds_begin_with_a_feasible_point() -> None:
     question = problem(HILL)
-    seeds, evaluated = rule_seeds(question, 20)
+    seeds, _, evaluated = rule_seeds(question, 20)
     assert question.rank(seeds[:1])[0] < INFEASIBLE
     assert evaluated > 0
 

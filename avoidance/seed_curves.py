@@ -1,0 +1,146 @@
+"""The curves that bound the feasible waypoints, and where they meet (Eq. 27, generalised).
+
+Tangents from the start and from the target to the circles that the legs must keep clear of, the circles that
+the waypoint itself must keep clear of, and those about what is avoided that it must not leave. Points and
+directions are complex numbers, north + i east: a turn is a product, and the dot and the cross product of a
+and b are the real and the imaginary part of conj(a) b.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from avoidance.flown import as_complex
+from avoidance.geometry import segments_clearance
+from avoidance.problem import WaypointProblem
+from avoidance.types import Bools, Complexes, Floats, Ints
+
+OUTSIDE = 0.02
+"""Seeds lie this far outside the curves they stand on [m]."""
+CORNER_PADS = np.array([OUTSIDE, 6.0, 20.0, 60.0])
+"""Tangents that meet near their circle are drawn this far outside, so that the turn stays outside too [m]."""
+CIRCLE_POINTS = 12
+"""Points on each circle that the waypoint must keep clear of."""
+RING = np.exp(2.0j * np.pi / CIRCLE_POINTS * np.arange(CIRCLE_POINTS))
+"""Their directions from its centre."""
+PARALLEL = 1e-12
+"""Sine of the angle at which two rays count as parallel."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Curves:
+    """Circles, and rays that touch them."""
+
+    start: complex
+    """Where the legs begin [m]."""
+    target: complex
+    """Where they end [m]."""
+    centres: Complexes
+    """Of the circles, shape (d,) [m]."""
+    rims: Floats
+    """What the waypoint keeps from them, shape (d,) [m]."""
+    from_start: Complexes
+    """Directions of tangents from the start that reach their circle, by pad, shape (p, a)."""
+    from_target: Complexes
+    """The same from the target, shape (p, b)."""
+
+    @classmethod
+    def of(cls, problem: WaypointProblem, near: Ints) -> Curves:
+        """Those of the obstacles with the indices `near`, shape (d,)."""
+        centres, keep = as_complex(problem.centres[near]), problem.keep[near]
+        rims = (keep if "g1" in problem.relaxed else problem.keep_waypoint[near]) + OUTSIDE
+        start, target = complex(*problem.start), complex(*problem.target)
+        padded = keep + CORNER_PADS[:, None]
+        rays = []
+        for point in (start, target):
+            directions = _tangents(point, centres, padded)
+            rays.append(directions[:, _reaching(problem, point, centres, keep + OUTSIDE, directions[0])])
+        return cls(start, target, centres, rims, *rays)
+
+    def corners(self) -> tuple[Complexes, ...]:
+        """Where rays from the start meet rays from the target."""
+        first, second = self.from_start[:, :, None], self.from_target[:, None]
+        between = self.target - self.start
+        sine = (np.conj(first) * second).imag
+        with np.errstate(divide="ignore", invalid="ignore"):  # parallel rays meet nowhere
+            along_first = (np.conj(between) * second).imag / sine
+            along_second = (np.conj(between) * first).imag / sine
+        good = (along_first > 0.0) & (along_second > 0.0) & (np.abs(sine) >= PARALLEL)
+        return ((self.start + along_first * first)[good],)
+
+    def pierced(self, problem: WaypointProblem) -> tuple[Complexes, ...]:
+        """Where rays meet circles that the waypoint must keep out of, and leave the search space (g2)."""
+        centres, radii = self.centres, self.rims
+        if "g2" not in problem.relaxed:
+            members = as_complex(problem.centres[problem.avoided])
+            limit = np.full(len(members), problem.parameters.search_limit - OUTSIDE)
+            centres, radii = np.concatenate([centres, members]), np.concatenate([radii, limit])
+        return (
+            *_pierce(self.start, self.from_start[0], centres, radii),
+            *_pierce(self.target, self.from_target[0], centres, radii),
+        )
+
+    def crossings(self) -> tuple[Complexes, ...]:
+        """Intersections of all pairs of circles that the waypoint must keep out of."""
+        centres, radii = self.centres, self.rims
+        offset = centres - centres[:, None]
+        distance = np.abs(offset)
+        first, second = np.nonzero(distance < radii + radii[:, None])
+        first, second = first[first < second], second[first < second]
+        offset, distance = offset[first, second], np.maximum(distance[first, second], 1e-9)
+        along = (distance**2 + radii[first] ** 2 - radii[second] ** 2) / (2.0 * distance)
+        square = radii[first] ** 2 - along**2
+        good = square >= 0.0
+        unit = offset[good] / distance[good]
+        foot = centres[first[good]] + along[good] * unit
+        half = 1.0j * np.sqrt(square[good]) * unit
+        return foot + half, foot - half
+
+    def beside(self) -> Floats:
+        """Points along each circle, and where it comes nearest to the straight leg, shape (m, 2) [m]."""
+        between = self.target - self.start
+        across = 1.0j * between / max(abs(between), 1e-9)
+        directions = np.append(RING, [across, -across])
+        found = self.centres[:, None] + self.rims[:, None] * directions
+        return np.asarray(found.view(np.float64).reshape(-1, 2))
+
+
+def _tangents(point: complex, centres: Complexes, radii: Floats) -> Complexes:
+    """Directions of the left, then of the right tangent from a point to each circle.
+
+    Of radii of shape (..., d), shape (..., 2d). Towards the centre, turned by 90 degrees, from inside.
+    """
+    offset = centres - point
+    distance = np.maximum(np.abs(offset), 1e-9)
+    sine = np.minimum(radii / distance, 1.0)
+    opening = np.sqrt(1.0 - sine * sine) + 1.0j * sine
+    bearing = offset / distance
+    return np.concatenate([bearing * np.conj(opening), bearing * opening], axis=-1)
+
+
+def _reaching(
+    problem: WaypointProblem, point: complex, centres: Complexes, radii: Floats, directions: Complexes
+) -> Bools:
+    """Which of the tangents from a point nothing blocks before they touch their circle, shape (2d,)."""
+    square = np.tile(np.abs(centres - point) ** 2 - radii * radii, 2)
+    touch = point + np.sqrt(np.maximum(square, 0.0)) * directions
+    begin = np.full(len(touch), point)
+    pairs = (begin.view(np.float64).reshape(-1, 2), touch.view(np.float64).reshape(-1, 2))
+    gap = segments_clearance(*pairs, problem.centres)
+    return np.asarray((gap >= problem.keep - OUTSIDE).all(axis=1) & (square > 0.0))
+
+
+def _pierce(
+    point: complex, directions: Complexes, centres: Complexes, radii: Floats
+) -> tuple[Complexes, Complexes]:
+    """Where rays from a point enter circles, and where they leave them."""
+    seen = np.conj(directions)[:, None] * (centres - point)
+    square = radii * radii - seen.imag**2
+    half = np.sqrt(np.maximum(square, 0.0))
+    near, far = seen.real - half, seen.real + half
+    ahead = (square >= 0.0) & (far > 0.0)
+    unit = np.broadcast_to(directions[:, None], seen.shape)
+    entered = ahead & (near > 0.0)
+    return point + near[entered] * unit[entered], point + far[ahead] * unit[ahead]
