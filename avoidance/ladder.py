@@ -18,7 +18,7 @@ import numpy as np
 
 from avoidance.constraints import feasible_segments
 from avoidance.flown import flown_segments
-from avoidance.geometry import point_distances
+from avoidance.geometry import point_distances, segment_point_distance
 from avoidance.problem import WaypointProblem
 from avoidance.search import search_waypoint
 from avoidance.tangent_graph import shortest_path
@@ -100,6 +100,8 @@ def _cheapest(problem: WaypointProblem, plan: Plan, rng: np.random.Generator) ->
         route, lacking = _through_traffic(problem, rng)
         if route is not None and lacking <= 0.0 and _length(problem, route) < length - several:
             return Plan(Rung.ROUTE, route, plan.search)
+    if length - _at_least(problem) < relaxing:
+        return plan
     route = _kept_from_intruders(problem, exact_route(problem, length - relaxing))
     if not route or _length(problem, route) > length - relaxing:
         return plan
@@ -110,6 +112,25 @@ def _cheapest(problem: WaypointProblem, plan: Plan, rng: np.random.Generator) ->
     if _length(problem, route) < _length(problem, plan.waypoints) - several:
         return Plan(Rung.ROUTE, route, plan.search)
     return plan
+
+
+def _at_least(problem: WaypointProblem) -> float:
+    """Length that no way can fall below: the way round one circle alone, whichever needs the longest [m].
+
+    Two tangents and the arc between them, on the side on which it is shorter; radii as `exact_route` has.
+    """
+    away, off = (
+        point_distances(problem.centres, problem.start),
+        point_distances(problem.centres, problem.target),
+    )
+    straight = math.dist(problem.start, problem.target)
+    radii = np.minimum(np.minimum(problem.keep, away - 0.5), off - 0.5)
+    cut = segment_point_distance(problem.start, problem.target, problem.centres) < radii
+    away, off, radii = away[cut], off[cut], radii[cut]
+    between = np.arccos(np.clip((away**2 + off**2 - straight**2) / (2.0 * away * off), -1.0, 1.0))
+    arc = between - np.arccos(radii / away) - np.arccos(radii / off)
+    round_it = np.sqrt(away**2 - radii**2) + np.sqrt(off**2 - radii**2) + radii * arc
+    return float(round_it.max(initial=straight))
 
 
 def _worth(problem: WaypointProblem) -> tuple[float, float]:

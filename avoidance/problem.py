@@ -106,7 +106,7 @@ class WaypointProblem:
         return total
 
     def leg_violation(self, points: Floats) -> Floats:
-        """The least by which candidates of shape (n, 2) break g3: what their straight legs do [m], shape (n,)."""
+        """The least by which candidates of shape (n, 2) break g3, by their straight legs [m], shape (n,)."""
         if not len(self.centres) or not len(points):
             return np.zeros(len(points))
         onward = np.empty((len(points), 3), dtype=np.complex128)
