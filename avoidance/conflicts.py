@@ -51,7 +51,7 @@ def first_conflict(
     resuming : bool
         True for a route that is to be taken up: it keeps d + h and the doubt about the prediction. One that
         is being flown is left alone unless it surely comes nearer than d + h/2; in the last minute, unless
-        it is expected to.
+        it surely does not.
 
     Notes
     -----
@@ -63,7 +63,7 @@ def first_conflict(
         return None
     separation, times = _approaches(own, route, performance, intruders)
     doubt, needed = intruders.doubt(times), intruders.needed(times)
-    surely = intruders.radii + 0.5 * intruders.margin - np.where(times > HASTE, doubt, 0.0)
+    surely = intruders.radii + 0.5 * intruders.margin - np.where(times > HASTE, doubt, -doubt)
     surely = np.minimum(surely, intruders.most)
     limit = needed if resuming else np.maximum(surely, 0.0)
     close = ((separation < limit) & (times < CONFLICT_HORIZON))[0]

@@ -15,7 +15,7 @@ FIRST_SPEED = 30.0
 """Standard deviation of the speed of something seen once [m/s]."""
 FIRST_CLIMB = 5.0
 """Standard deviation of the climb rate of something seen once [m/s]."""
-WANDER = 0.002
+WANDER = 0.0005
 """Power density of the accelerations of something that flies straight on [m²/s³]."""
 WANDER_UP = 0.01
 """The same in height: aircraft hunt about their altitude [m²/s³]."""
