@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from avoidance import Ownship, Route, Waypoint
+from avoidance import Contact, Ownship, Performance, RadarScan, Route, Waypoint
+from avoidance.agent import Agent
 from avoidance.holding import FIRST_WAIT, LONGEST_WAIT, NoWay
+from avoidance.parameters import PAPER
 
 ROUTE = Route(Waypoint(0.0, 0.0, 200.0), (Waypoint(9000.0, 0.0, 200.0, item=0),))
 
@@ -29,3 +31,18 @@ def test_it_is_not_believed_of_another_route_nor_when_something_new_is_known() -
     assert not no_way.lasts(at(4.0), ROUTE, version=2)
     assert not no_way.lasts(at(4.0), other, version=1)
     assert no_way.again(at(4.0), ROUTE, version=2).until == 4.0 + FIRST_WAIT
+
+
+def test_a_dead_end_far_ahead_is_not_thought_over_at_every_scan() -> None:
+    """Walls leave no room to hold in, their end shuts the leg 6 km ahead, and the planner knows no way."""
+    walls = [(400.0 * k, side * 1100.0) for k in range(-6, 19) for side in (-1, 1)]
+    contacts = [Contact(k, *place, 200.0) for k, place in enumerate([*walls, (7200.0, 0.0)])]
+    performance = Performance(
+        airspeed=15.0, max_bank=0.5236, roll_time=1.3, acceptance_radius=100.0, tracking_error=5.0
+    )
+    route = Route(ROUTE.origin, (Waypoint(40_000.0, 0.0, 200.0),))
+    asked: list[object] = []
+    agent = Agent(performance, PAPER, way=lambda problem, _: asked.append(problem))
+    said = [agent.decide(at(t), route, RadarScan.of(t, contacts)) for t in map(float, range(60))]
+    assert all(decision.name == "keep" and decision.threat for decision in said[-10:])
+    assert 3 <= len(asked) <= 8
