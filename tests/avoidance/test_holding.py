@@ -35,7 +35,7 @@ def test_it_is_not_believed_of_another_route_nor_when_something_new_is_known() -
 
 def test_a_dead_end_far_ahead_is_not_thought_over_at_every_scan() -> None:
     """Walls leave no room to hold in, their end shuts the leg 6 km ahead, and the planner knows no way."""
-    walls = [(400.0 * k, side * 1100.0) for k in range(-6, 19) for side in (-1, 1)]
+    walls = [(200.0 * k, side * 1050.0) for k in range(-12, 37) for side in (-1, 1)]
     contacts = [Contact(k, *place, 200.0) for k, place in enumerate([*walls, (7200.0, 0.0)])]
     performance = Performance(
         airspeed=15.0, max_bank=0.5236, roll_time=1.3, acceptance_radius=100.0, tracking_error=5.0
