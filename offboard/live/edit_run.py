@@ -178,7 +178,8 @@ class EditRun:
     def _observed(self, telemetry: Telemetry) -> Observed:
         """What the vehicle has shown since the item was selected.
 
-        A target that fits counts from the upload on: PX4 flies to the flagged item at once.
+        A target that fits counts from the upload on: PX4 flies to the flagged item at once. That PX4 finds
+        nothing to fly counts while it flies its mission: in Hold it says so of each, until it is started.
         """
         flying = self._rules.mode(telemetry.custom_mode) is Mode.MISSION
         shown, target = telemetry.mission, telemetry.target
@@ -190,7 +191,7 @@ class EditRun:
             where = Waypoint(*self._frame.to_map(target.latitude_deg, target.longitude_deg), 0.0)
             if target.arrived < self._selected and not (target.arrived >= self._sent and self._near(where)):
                 return nothing
-        refused = self._refused or (shown.state == NO_MISSION and shown.total > 0)
+        refused = self._refused or (flying and shown.state == NO_MISSION and shown.total > 0)
         total = shown.total if shown.total or where is None else self._edit.wanted.total
         return Observed(total, shown.current, where, refused, self._accepted, flying)
 

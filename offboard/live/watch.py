@@ -129,6 +129,7 @@ class Watch:
             return []
         if mode in self.rules.edit_may_cause and time - self._edited < OWN_EDIT and not self.retried:
             self.retried = True
+            self._before = mode  # until it flies the mission that is sent again
             return [Seen.DROPPED]
         self.human = True
         return [Seen.TAKEN]
