@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from avoidance import Ownship, RadarScan, Route
+from avoidance import Contact, Ownship, RadarScan, Route
 from avoidance.conflicts import first_conflict, to_be_avoided, wind_estimate
 from avoidance.known import Known, known_obstacles
 from avoidance.parameters import DEFAULT
@@ -53,6 +53,35 @@ def test_a_doubtful_conflict_is_no_reason_to_leave_a_route_but_one_not_to_take_i
     unsure = with_traffic(own, way, replace(passing, speed_sigma=np.array([1.0])))
     assert first_conflict(own, way, unsure, PERFORMANCE) is None
     assert first_conflict(own, way, unsure, PERFORMANCE, resuming=True) is not None
+
+
+def test_in_the_last_minute_doubt_asks_for_more_room_and_before_it_excuses_a_route() -> None:
+    own, way = ownship(), route((40_000.0, 0.0))
+
+    def conflict(north: float, sigma: float) -> bool:
+        traffic = replace(intruders((north, 1010.0, -15.0, 0.0), margin=0.0), speed_sigma=np.array([sigma]))
+        return first_conflict(own, way, with_traffic(own, way, traffic), PERFORMANCE) is not None
+
+    assert not conflict(1200.0, 0.1)  # 40 s: 4 m of doubt
+    assert conflict(1200.0, 0.5)
+    assert not conflict(9000.0, 0.5)
+
+
+def test_nobody_is_asked_to_keep_what_cannot_be_kept_any_more() -> None:
+    """Side by side at less than d + h, and as fast: nothing to be done; another far ahead is as ever."""
+    tracker, way = Tracker(DEFAULT), route((40_000.0, 0.0))
+    for second in range(12):
+        north = 15.0 * second
+        own = ownship(north=north, time=float(second))
+        places = (north, 1010.0, 200.0), (9000.0 - north, 3000.0, 200.0)
+        contacts = [Contact(id=7 + i, north=n, east=e, altitude=h) for i, (n, e, h) in enumerate(places)]
+        picture = tracker.update(RadarScan.of(float(second), contacts), own)
+    known = known_obstacles(picture, own, way, PERFORMANCE, DEFAULT)
+    beside, ahead = known.intruders.most
+    assert 1000.0 < beside < 1010.0
+    assert ahead == np.inf
+    assert known.intruders.needed(np.zeros(2))[1] == pytest.approx(1000.0 + DEFAULT.moving_margin)
+    assert first_conflict(own, way, known, PERFORMANCE) is None
 
 
 def test_wind_changes_where_two_meet() -> None:
