@@ -22,6 +22,7 @@ from avoidance.replacement import Replacements
 from avoidance.return_to_leg import ReturnToLeg
 from avoidance.route_check import Blocked, first_blocked_leg
 from avoidance.second_thoughts import SecondThoughts, second_words
+from avoidance.sides import SMALL, Sides, end_words
 from avoidance.tracking import Tracker
 from avoidance.types import (
     Decision,
@@ -97,6 +98,7 @@ class Agent:
         self._escape = Escape(performance)
         self._replacements = Replacements(performance, parameters, geofence)
         self._second_thoughts = SecondThoughts()
+        self._sides = Sides()
         self._rally = Rally(rally, performance, parameters)
         self._refuge: Waypoint | None = None
         self._checked: int | None = None
@@ -128,6 +130,7 @@ class Agent:
             `Keep` nearly always.
         """
         picture = self._tracker.update(scan, own)
+        self._sides.look(own, scan)
         if not route.waypoints:
             return CLEAR
         traffic = bool(picture.moving.any())
@@ -173,7 +176,7 @@ class Agent:
             blocked = first_conflict(own, route, known, self._performance)
         if blocked is not None:
             return self._avoid(own, route, known, blocked)
-        again = self._choose_again(own, route, known)
+        again = self._choose_again(own, route, known) or self._round_the_end(own, route, known)
         return self._resume(own, route, known) if again is None else again
 
     def _avoid(self, own: Ownship, route: Route, known: Known, blocked: Blocked) -> Decision:
@@ -182,8 +185,11 @@ class Agent:
         gap = Gap.of(own, route, known, blocked, self._performance, self._parameters)
         if not (blocked.threat.moving or self._holding) and self._no_way.lasts(own, route, self._version):
             return self._wait(gap)
-        way = way_with_orbits(gap, self._way, self._rng)
+        still = self._parameters.memory and not blocked.threat.moving
+        way = way_with_orbits(gap, self._sides.way(self._way) if still else self._way, self._rng)
         if way is not None:
+            if still and way.route is not None:
+                self._sides.chosen(gap.problem, blocked, gap.taken(way))
             self._avoiding = frozenset(blocked.threat.ids)
             self._traffic.avoiding(blocked.threat.ids)
             self._holding = False
@@ -213,6 +219,22 @@ class Agent:
             return None
         self._avoiding |= frozenset(doubt.threat.ids)
         return replace(way, why=second_words(doubt.threat, way))
+
+    def _round_the_end(self, own: Ownship, route: Route, known: Known) -> Decision | None:
+        """A shorter way where more of a hill was expected than there is: its end has come into view."""
+        hill = None if self._holding else self._sides.expected(route, known)
+        if hill is None:
+            return None
+        gap = Gap.of(own, route, known, hill, self._performance, self._parameters)
+        if self._sides.open_ahead(gap.problem):
+            self._retry_at = own.time + RETRY
+            return None
+        self._sides.settled()
+        way = way_with_orbits(gap, self._sides.way(self._way), self._rng)
+        if way is None or way.route is None or gap.saving(way) < SMALL:
+            return None
+        self._sides.chosen(gap.problem, hill, gap.taken(way))
+        return replace(way, why=end_words(hill.threat, way))
 
     def _move(self, gap: Gap) -> Decision | None:
         """Another stand-in for the waypoint that no way leads to."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
@@ -12,7 +13,7 @@ from avoidance.contingency import first_trap, turning_room
 from avoidance.detours import fly_round, search_problem
 from avoidance.exact import exact_plan
 from avoidance.known import Known
-from avoidance.ladder import Plan, Way, widest_way
+from avoidance.ladder import Corners, Plan, Way, widest_way
 from avoidance.parameters import Parameters
 from avoidance.problem import WaypointProblem
 from avoidance.route_check import Blocked
@@ -64,6 +65,21 @@ class Gap:
     def way(self, plan: Plan) -> Decision:
         """The decision to fly a plan."""
         return fly_round(self.route, self.blocked, plan, self.begin, self.end)
+
+    def taken(self, way: Decision) -> Corners:
+        """What a decision puts in between, north and east [m]."""
+        new = len(way.route or ()) - (len(self.route.waypoints) - (self.end - self.begin))
+        return tuple((w.north, w.east) for w in (way.route or ())[self.begin : self.begin + new])
+
+    def saving(self, way: Decision) -> float:
+        """How much shorter the route gets by a decision [m]."""
+        here, there = self.problem.start, self.problem.target
+        old = [(w.north, w.east) for w in self.route.waypoints[self.begin : self.end]]
+        lengths = [
+            sum(math.dist(a, b) for a, b in pairwise((here, *corners, there)))
+            for corners in (old, self.taken(way))
+        ]
+        return lengths[0] - lengths[1]
 
     def trap(self, plan: Plan) -> Blocked | None:
         """The first stretch of a plan along which no orbit in free space can be begun for too long.

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from avoidance import Detour, Hold, Replace, Reroute, Threat, Waypoint
+from avoidance.known import kept_margin
 from avoidance.types import Floats
 from avoidance.yardsticks import length_to_optimum, search_gap
 from offboard.plan_files import PlanFile, write_plan
@@ -193,7 +194,7 @@ def run_facts(flown: Flown) -> dict[str, Any]:
         "acceptance_radius_m": flown.performance.acceptance_radius,
         "turn_radius_m": round(flown.performance.turn_radius, 3),
         "turn_room_m": round(flown.performance.turn_room, 3),
-        "margin_m": flown.parameters.margin,
+        "margin_m": round(kept_margin(flown.parameters, flown.performance), 3),
         "wall_s": {
             "flight": round(flown.wall.total, 3),
             "avoidance": round(flown.wall.avoidance, 3),
