@@ -125,7 +125,7 @@ class LiveFlight:
         self._hangar = Hangar(scenario, parameters) if truth and scenario.traffic else None
         movers = self._hangar.traffic() if self._hangar is not None else []
         vehicle.pump()
-        vehicle.aboard.clock.restart()
+        vehicle.aboard.begin()
         self.shadow = Shadow(vehicle)
         self.world = World(scenario.obstacles if truth else (), {OWN: self.shadow}, movers)
         generators = streams(seed)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from avoidance import Ownship, Performance
 from offboard.frames import MapFrame
@@ -78,6 +78,12 @@ class Aboard:
         if known is not None:
             return Home(*known)
         return Home(self.frame.latitude_deg, self.frame.longitude_deg, self.frame.altitude_m)
+
+    def begin(self) -> None:
+        """The flight begins: seconds count from now on; what was told before has times below zero."""
+        before = self.time
+        self.clock.restart()
+        self.events[:] = [replace(event, time=round(event.time - before, 3)) for event in self.events]
 
     def tell(self, severity: str, text: str) -> None:
         """Note something that a pilot must know."""

@@ -30,6 +30,8 @@ FENCED = replace(
 
 def test_an_outage_is_in_the_record(tmp_path):
     with flying("px4") as flight:
+        flight.vehicle.aboard.tell("info", "before the flight")
+        flight.fly(2.0)
         scenario = scenario_of(flight.vehicle, SMALL, "small")
         with contextlib.closing(LiveFlight(scenario, flight.vehicle, Source("test"), DEFAULT)) as live:
             for frame in live:
@@ -42,6 +44,8 @@ def test_an_outage_is_in_the_record(tmp_path):
     write_run(tmp_path / "run", flown, judged)
     rows = [json.loads(line) for line in (tmp_path / "run" / "events.jsonl").read_text().splitlines()]
     assert any(row["severity"] == "alarm" and "the link is lost" in row["text"] for row in rows)
+    (before,) = [row["t_s"] for row in rows if row["text"] == "before the flight"]
+    assert -4.0 < before < -1.0
     ((begin, end),) = json.loads((tmp_path / "run" / "run.json").read_text())["reckoned_s"]
     assert begin == pytest.approx(6.0, abs=1.0)
     assert end == pytest.approx(15.5, abs=1.5)
