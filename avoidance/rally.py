@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
 from avoidance.conflicts import first_conflict
 from avoidance.contingency import WIDE, first_trap, orbit_reach
+from avoidance.geometry import segments_clearance
 from avoidance.known import Known
 from avoidance.parameters import Parameters
 from avoidance.route_check import Blocked, first_blocked_leg
-from avoidance.types import Hold, Ownship, Performance, Route, Rung, Waypoint
+from avoidance.types import Floats, Hold, Ownship, Performance, Route, Rung, Waypoint
 from avoidance.words import threat_words
 
 
@@ -31,8 +32,9 @@ class Rally:
     Notes
     -----
     As the autopilots do on a return, the nearest is taken; other than with them its way and its circle must
-    be free: as the rest of a route is tested, to the centre and along both tangents of the circle, for
-    autopilots join it as they please.
+    be free. The way is tested as the rest of a route is, and no sphere may lie nearer to the straight line
+    than the room to turn: after turning round, guidance flies to the circle, not back on to that line
+    (measured on both fidelities: up to 2.1 turn radii beside it).
     """
 
     def __init__(self, points: Sequence[Waypoint], performance: Performance, parameters: Parameters) -> None:
@@ -54,15 +56,23 @@ class Rally:
         """True if a rally point can be flown to and circled about; `flown` for one that is on the way to."""
         low, high = sorted((own.altitude, point.altitude))
         circles = known.circles(low, high)
-        here, centre = np.array([own.north, own.east]), np.array([[point.north, point.east]])
-        room = float(known.walls.clearance(centre, centre)[0])
-        if len(circles.centres):
-            room = min(room, float((np.hypot(*(circles.centres - centre).T) - circles.hard).min()))
-        if room < self.radius + orbit_reach(self._performance, WIDE):
+        here, centre = np.array([[own.north, own.east]]), np.array([[point.north, point.east]])
+
+        def room(begin: Floats) -> float:
+            """Least distance of the segment from a point to the centre, from spheres and walls [m]."""
+            spheres = segments_clearance(begin, centre, circles.centres)[0] - circles.hard
+            return min(float(known.walls.clearance(begin, centre)[0]), float(spheres.min(initial=math.inf)))
+
+        if room(centre) < self.radius + orbit_reach(self._performance, WIDE):
             return False
-        if np.hypot(*(centre[0] - here)) <= 2.0 * self.radius:
+        if np.hypot(*(centre - here)[0]) <= 2.0 * self.radius:
             return True
-        return not any(self._blocked(own, way, known, flown) for way in self._ways(own, point))
+        aside = self.radius if flown else self._performance.turn_room
+        if room(here) < aside + 2.0 * self._performance.tracking_error:
+            return False
+        return not self._blocked(
+            own, Route(Waypoint(own.north, own.east, own.altitude), (point,)), known, flown
+        )
 
     def hold(self, own: Ownship, point: Waypoint, blocked: Blocked) -> Hold:
         """Fly to a rally point and wait there."""
@@ -76,14 +86,6 @@ class Rally:
             radius=self.radius,
             direction=1,
         )
-
-    def _ways(self, own: Ownship, point: Waypoint) -> Iterator[Route]:
-        here = Waypoint(own.north, own.east, own.altitude)
-        north, east = point.north - own.north, point.east - own.east
-        length = math.hypot(north, east)
-        for side in (0.0, self.radius, -self.radius):
-            aside = (-side * east / length, side * north / length)
-            yield Route(here, (Waypoint(point.north + aside[0], point.east + aside[1], point.altitude),))
 
     def _blocked(self, own: Ownship, way: Route, known: Known, flown: bool) -> bool:
         performance = self._performance

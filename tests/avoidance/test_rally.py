@@ -47,6 +47,12 @@ def test_one_whose_way_is_not_free_is_passed_over() -> None:
     assert nearest([beyond], (0.0, -4000.0)) is None
 
 
+@pytest.mark.parametrize(("aside", "free"), [(1095.0, False), (1130.0, True)])
+def test_beside_the_way_there_is_room_for_turning_round(aside: float, free: bool) -> None:
+    behind = Waypoint(-6000.0, 0.0, 200.0)
+    assert (nearest([behind], (-1500.0, aside)) == behind) == free
+
+
 class Lost:
     """A planner that finds no way until it is told to."""
 
