@@ -39,6 +39,12 @@ Corners: TypeAlias = tuple[tuple[float, float], ...]
 LARGEST_CORNER = math.radians(15.0)
 """Heading change of a corner of an exact route [rad]."""
 
+CORNER_CUT = 0.12
+"""By how much circles are widened at first, in acceptance radii: turns of `LARGEST_CORNER` cut so much."""
+PADS = (0.02, 0.5, 1.0, 2.0, 4.0)
+"""By how much they are widened, in turn radii, where that leads to no route that can be flown: hardly, for
+the start may lie next to a circle; then ever more."""
+
 ROOM_LEFT = 50.0
 """A separation from an intruder is worth a change of route if it is better by this [m]."""
 
@@ -100,18 +106,17 @@ def _cheapest(problem: WaypointProblem, plan: Plan, rng: np.random.Generator) ->
         route, lacking = _through_traffic(problem, rng)
         if route is not None and lacking <= 0.0 and _length(problem, route) < length - several:
             return Plan(Rung.ROUTE, route, plan.search)
-    if length - _at_least(problem) < relaxing:
-        return plan
-    route = _kept_from_intruders(problem, exact_route(problem, length - relaxing))
-    if not route or _length(problem, route) > length - relaxing:
-        return plan
-    if plan.rung is not Rung.CLOSE:
-        search = search_waypoint(replace(problem, relaxed=RUNGS[-1][1]), rng)
-        if search.found is not None and _length(problem, (search.found,)) < length - relaxing:
+    least = _at_least(problem)
+    if plan.rung is not Rung.CLOSE and length - least >= relaxing:
+        close = replace(problem, relaxed=RUNGS[-1][1], longest=length - relaxing)
+        search = search_waypoint(close, rng)
+        if search.found is not None:
             plan = Plan(Rung.CLOSE, (search.found,), search)
-    if _length(problem, route) < _length(problem, plan.waypoints) - several:
-        return Plan(Rung.ROUTE, route, plan.search)
-    return plan
+            length = _length(problem, plan.waypoints)
+    if length - least < several:
+        return plan
+    route = _kept_from_intruders(problem, exact_route(problem, length - several))
+    return plan if not route else Plan(Rung.ROUTE, route, plan.search)
 
 
 def _at_least(problem: WaypointProblem) -> float:
@@ -204,16 +209,18 @@ def exact_route(problem: WaypointProblem, longest: float = math.inf) -> Corners 
     be kept; intruders are not considered. No waypoints at all: the straight way leads out of a margin that
     the vehicle is already inside.
     """
-    keep = problem.keep
+    performance = problem.performance
     free_start = point_distances(problem.centres, problem.start) - 0.5
     free_target = point_distances(problem.centres, problem.target) - 0.5
-    room = 2.0 * problem.performance.turn_radius
-    for pad in (1.0, 0.25 * room, 0.5 * room, room, 2.0 * room):
-        radii = np.minimum(np.minimum(keep + pad, free_start), free_target)
+    pads = (1.0 + CORNER_CUT * performance.acceptance_radius, *np.multiply(PADS, performance.turn_radius))
+    for pad in pads:
+        radii = np.maximum(np.minimum(np.minimum(problem.keep + pad, free_start), free_target), 0.0)
         walls = replace(problem.walls, room=problem.walls.room + pad)
-        path = shortest_path(problem.start, problem.target, problem.centres, np.maximum(radii, 0.0), walls)
-        if path is None or path.length > longest:
+        path = shortest_path(problem.start, problem.target, problem.centres, radii, walls, longest)
+        if path is None and pad > pads[0]:
             return None
+        if path is None:
+            continue
         corners = path.polyline(LARGEST_CORNER)
         if flyable(problem, corners):
             inner = corners[1:-1]

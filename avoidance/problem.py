@@ -67,6 +67,8 @@ class WaypointProblem:
     """Constraints given up on this rung of the ladder: any of "g4", "g2", "g1"."""
     wind: tuple[float, float] = (0.0, 0.0)
     """Steady wind, towards north and east [m/s]."""
+    longest: float = math.inf
+    """Ways that are no shorter than this are of no use: where seeds find none, the search ends [m]."""
 
     def cost(self, points: Floats) -> Floats:
         """f of Eq. (6) for candidates of shape (n, 2): W_t f1 + W_o f2, shape (n,)."""

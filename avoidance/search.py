@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Protocol
 
 import numpy as np
@@ -75,16 +76,17 @@ def search_waypoint(problem: WaypointProblem, rng: np.random.Generator) -> Searc
     """
     parameters = problem.parameters
     settings = parameters.swarm
-    evaluations = 0
+    evaluations, useful = 0, True
     if parameters.rule_seeds:
         seeds, ranks, evaluations = rule_seeds(problem, settings.particles)
+        useful = math.isinf(problem.longest) or bool(ranks[0] < INFEASIBLE)
     else:
         seeds = sphere_seeds(problem, settings.particles, rng)
         ranks = np.full(len(seeds), np.nan)
     optimiser = OPTIMISERS[parameters.optimiser](seeds, search_box(problem), settings, rng)
     iterations = 0
     first_feasible: int | None = None
-    while not optimiser.finished:
+    while not optimiser.finished and (useful or not iterations):
         points = optimiser.ask()
         known = iterations == 0 and not np.isnan(ranks).any() and np.array_equal(points, seeds)
         optimiser.tell(ranks if known else problem.rank(points))

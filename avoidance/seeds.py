@@ -110,9 +110,13 @@ def rule_seeds(problem: WaypointProblem, count: int) -> tuple[Floats, Floats, in
     if not len(problem.avoided) and not len(problem.intruders):
         seeds = _fan(problem)[:count]
         return seeds, np.full(len(seeds), np.nan), 0
-    seeds, ranks, tested = _best_first(problem, _candidates(problem), count)
+    candidates = _candidates(problem)
+    useful = path_length(candidates, problem.start, problem.target) < problem.longest
+    if not useful.any():
+        return np.array([problem.start]), np.array([np.nan]), 0
+    seeds, ranks, tested = _best_first(problem, candidates[useful], count)
     rounds = ROUNDS
-    if ranks[0] >= INFEASIBLE:
+    if ranks[0] >= INFEASIBLE and math.isinf(problem.longest):
         seeds, ranks, more = _best_first(problem, np.concatenate([seeds, _fan(problem)]), count)
         tested += more
         rounds = ROUNDS_FROM_AFAR

@@ -31,7 +31,12 @@ NEAR = 2.0
 
 
 def shortest_path(
-    start: Point, goal: Point, centres: Floats, radii: Floats, walls: Walls | None = None
+    start: Point,
+    goal: Point,
+    centres: Floats,
+    radii: Floats,
+    walls: Walls | None = None,
+    longest: float = math.inf,
 ) -> Path | None:
     """Find the shortest path that enters no disc.
 
@@ -46,11 +51,13 @@ def shortest_path(
     walls : Walls, optional
         Segments that the path keeps `walls.room` from, less where start or goal is nearer. The discs must
         hold one of that radius about each end round which the path may bend.
+    longest : float, optional
+        A path longer than this is of no use [m]: with some of the discs it would be no longer.
 
     Returns
     -------
     Path or None
-        The shortest path; None if discs and walls leave no way.
+        The shortest path; None if discs and walls leave no way, or none so short.
 
     Raises
     ------
@@ -83,7 +90,7 @@ def shortest_path(
         posts, barred = np.zeros_like(posts), False
         graph.add(np.flatnonzero(near))
         found = graph.search()
-        if found is None:
+        if found is None or found.length > longest:
             return None
         path = found
 
