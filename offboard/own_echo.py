@@ -85,4 +85,5 @@ class OwnEcho:
     def sure(self, identity: int) -> bool:
         """True if one that `holds` has been told apart from a neighbour by now."""
         count = self._counts.get(identity)
-        return identity == self._address or (count is not None and count.together >= REPORTS)
+        ours = self._address != 0 and identity == self._address
+        return ours or (count is not None and count.together >= REPORTS)

@@ -38,6 +38,13 @@ def test_it_is_held_back_before_it_is_sure():
     assert not echo.sure(0xABCDEF)
 
 
+def test_a_sender_without_an_address_is_no_surer_than_any_other():
+    """Its number is that of an own address that is not known."""
+    echo = OwnEcho()
+    assert verdicts(echo, [report(0.0, identity=0)]) == [True]
+    assert not echo.sure(0)
+
+
 @pytest.mark.parametrize(
     "other",
     [{"east": 150.0}, {"altitude": 300.0}, {"velocity": (-15.0, 0.0)}, {"velocity": (15.0, 8.0)}],
