@@ -101,7 +101,10 @@ def truth(scenario: Scenario, rows: Sequence[Sequence[Any]], directory: Path) ->
         complete = not scenario.traffic and not any(each.appears_at for each in scenario.obstacles)
         found = separations(track, scenario.obstacles)
         return _summary(found, "all" if complete else "standing", None if fit is None else fit.apart)
-    standing = [replace(each, appears_at=each.appears_at + fit.offset) for each in scenario.obstacles]
+    standing = [
+        replace(each, appears_at=each.appears_at + fit.offset) if each.appears_at > 0.0 else each
+        for each in scenario.obstacles
+    ]
     traffic = [_at_times_of(track, run.track.times + fit.offset, each) for each in run.traffic]
     return _summary(separations(track, standing, traffic), "all", fit.apart)
 

@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 from scenarios.cli import app
 from scenarios.hil_truth import ClockFit, truth
 from scenarios.recorded import read_run
+from scenarios.scenario import Obstacle
 from scenarios.track import Track
 
 AHEAD = 37.25
@@ -78,6 +79,17 @@ def test_without_the_other_run_only_what_stands_still_is_judged(run, tmp_path):
     found = truth(run.scenario, rows_of(run.track), tmp_path / "nothing")
     assert found["judged"] == "standing"
     assert found["clock_fit_m"] is None
+
+
+@pytest.mark.parametrize(("appears_at", "violations"), [(0.0, 1), (1.0, 0)], ids=["always", "pop-up"])
+def test_what_stands_from_the_beginning_counts_before_the_run_begins(run, appears_at, violations):
+    """The plant takes off inside a sphere, and is out of it when the other process begins to record."""
+    inside = [(t, "flying", -9000.0, 0.0, 200.0) for t in np.arange(0.0, 5.0, 0.1)]
+    after = [row for row in rows_of(run.track) if row[0] > 5.0]
+    scenario = replace(run.scenario, obstacles=(Obstacle(1, -9000.0, 0.0, 200.0, 500.0, appears_at),))
+    found = truth(scenario, inside + after, run.directory)
+    assert found["judged"] == "all"
+    assert found["violations"] == violations
 
 
 def test_what_was_before_a_restart_does_not_count(run):
