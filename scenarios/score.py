@@ -214,7 +214,7 @@ def replacement_rule(parameters: Parameters, performance: Performance) -> Replac
     turn = performance.turn_room
     if parameters.all_obstacles:
         return ReplacementRule(margin, turn, (turn, 0.5 * turn), ALTITUDE_TOLERANCE)
-    rooms = (parameters.tolerance - parameters.margin, turn)
+    rooms = (parameters.tolerance - margin, turn)
     return ReplacementRule(margin, 0.0, rooms, ALTITUDE_TOLERANCE)
 
 

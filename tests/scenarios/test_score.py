@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from avoidance.parameters import PRESETS
+from avoidance import Performance
+from avoidance.parameters import PAPER, PRESETS
 from scenarios.goals import Goal
 from scenarios.load import parse
-from scenarios.score import waypoint_fates
+from scenarios.score import replacement_rule, waypoint_fates
 from scenarios.track import Track
 from tests.scenarios.flights import ON_A_WAYPOINT, flown
 
@@ -64,3 +65,13 @@ def test_a_mission_that_ends_on_an_obstacle_is_completed():
     assert result.ending == "finished"
     assert score.safe
     assert score.summary["optimum_length_m"] <= score.summary["path_length_m"] + 100.0
+
+
+@pytest.mark.parametrize("error", [5.0, 60.0])
+def test_by_the_papers_rules_a_stand_in_keeps_rs_and_the_tolerance_whatever_the_margin(error):
+    vehicle = Performance(
+        airspeed=15.0, max_bank=0.5236, roll_time=1.3, acceptance_radius=100.0, tracking_error=error
+    )
+    rule = replacement_rule(PAPER, vehicle)
+    assert rule.margin == max(PAPER.margin, error + PAPER.hysteresis)
+    assert rule.margin + rule.rooms[0] == PAPER.tolerance
