@@ -19,6 +19,7 @@ from offboard.pilot import Frame, Pilot, fly
 from scenarios.fence import core_fence
 from scenarios.flown import Flown, FlownVehicle, LoggedDecision, WallTime
 from scenarios.radar import SimulatedRadar
+from scenarios.rally import core_rally
 from scenarios.run import informed
 from scenarios.scenario import OWN, Home, Point, Scenario, streams
 from scenarios.score import Score, score
@@ -137,9 +138,9 @@ class LiveFlight:
         self.seen = SeenLog(made, parameters.safety_radius)
         self._radar = TimedRadar(self.seen)
         told = informed(parameters, scenario.radar) if truth else parameters
-        self._agent = WatchedAgent(
-            Core(vehicle.performance, told, generators["planner"], geofence=core_fence(scenario.geofence))
-        )
+        fence, rally = core_fence(scenario.geofence), core_rally(scenario.rally)
+        core = Core(vehicle.performance, told, generators["planner"], geofence=fence, rally=rally)
+        self._agent = WatchedAgent(core)
         self._clock = TimedClock(self.world)
         self._total = 0.0
         self.ending = "interrupted"

@@ -53,6 +53,19 @@ def test_an_outage_is_in_the_record(tmp_path):
     assert judged.summary["link_losses"] == 1
 
 
+def test_those_who_decide_know_fence_and_rally_points():
+    """What is read from the vehicle reaches the avoidance core, not only the record."""
+    with flying("px4", FENCED, touch=False) as flight:
+        areas = live_areas(flight.vehicle, None)
+        scenario = areas.put_into(scenario_of(flight.vehicle, None, "small"))
+        with contextlib.closing(LiveFlight(scenario, flight.vehicle, Source("test"), DEFAULT)) as live:
+            core = live._agent._agent
+    (waits_at,) = core._rally._points
+    assert (waits_at.north, waits_at.east) == pytest.approx((500.0, -500.0), abs=0.1)
+    assert waits_at.altitude == pytest.approx(150.0)
+    assert len(core._geofence.areas) == 1
+
+
 @pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
 def test_areas_of_the_mission_are_put_aboard_and_those_aboard_are_used(autopilot):
     with flying(autopilot) as flight:
