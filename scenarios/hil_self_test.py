@@ -25,6 +25,8 @@ from scenarios.hil_setup import Rig
 
 TARGETS = {"ardupilot": 3000.0, "px4": 2000.0}
 """Steps per second that the loop is to reach on one core, scripted autopilot included."""
+TOLD = 0.05
+"""Less processor time than this that the host withheld is not worth a word [s]."""
 LATE_SHARE = 0.001
 """Of the steps in real time, so many may begin more than a period late."""
 _BOOT = 60.0
@@ -158,7 +160,9 @@ def fly_real_time(rig: Rig, seconds: float) -> SelfTest:
 
 def _withheld(stolen: float | None) -> str:
     """What the machine's host did to the run, in words."""
-    return f"; not an idle machine: its host withheld {stolen:.1f} s of processor time" if stolen else ""
+    if stolen is None or stolen < TOLD:
+        return ""
+    return f"; not an idle machine: its host withheld {stolen:.1f} s of processor time"
 
 
 class Stopwatch:

@@ -29,4 +29,4 @@ def test_a_system_that_does_not_tell_says_nothing(tmp_path: Path, text: str) -> 
 
 def test_withheld_time_is_said_only_if_there_was_some() -> None:
     assert "2.5 s" in _withheld(2.5)
-    assert _withheld(0.0) == _withheld(None) == ""
+    assert _withheld(0.0) == _withheld(0.01) == _withheld(None) == ""
