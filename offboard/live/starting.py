@@ -121,7 +121,9 @@ def arm(vehicle: LiveVehicle, timeout: float = 60.0) -> None:
     until = session.wall() + timeout
     while not vehicle.aboard.telemetry.armed:
         if session.wall() > until:
-            said = [event.text for event in vehicle.aboard.events if event.severity == "warning"]
+            name = f"{vehicle.aboard.rules.name}: "  # other warnings are our own
+            told = [event.text for event in vehicle.aboard.events if event.severity == "warning"]
+            said = [text for text in told if text.startswith(name)]
             raise LinkError(f"the vehicle does not arm: {said[-1] if said else 'it does not say why'}")
         session.ask(Ask.ARM)
         vehicle.wait_for(lambda: vehicle.aboard.telemetry.armed, RETRY_ARM)
