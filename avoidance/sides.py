@@ -72,11 +72,11 @@ class Sides:
             plan = planner(longer, rng)
             if plan is None:
                 return None if longer is problem else planner(problem, rng)
-            if not self._passing(problem) or side_of(problem, plan.waypoints) * self._side >= 0.0:
-                return plan
-            same = planner(barred(longer, -self._side), rng)
-            enough = RELUCTANCE * _excess(problem, plan.waypoints) + SMALL
-            return plan if same is None or _excess(problem, same.waypoints) > enough else same
+            if self._passing(problem) and side_of(problem, plan.waypoints) * self._side < 0.0:
+                same = planner(barred(longer, -self._side), rng)
+                enough = RELUCTANCE * _excess(problem, plan.waypoints) + SMALL
+                plan = plan if same is None or _excess(problem, same.waypoints) > enough else same
+            return plan if longer is problem else _told_of(plan, problem)
 
         return on_one_side
 
@@ -208,6 +208,11 @@ def barred(problem: WaypointProblem, side: float) -> WaypointProblem:
 def _fixed_start(problem: WaypointProblem) -> tuple[float, float] | None:
     """Where a detour begins that lies behind a waypoint; None if it begins at the vehicle."""
     return None if problem.before is None else problem.start
+
+
+def _told_of(plan: Plan, problem: WaypointProblem) -> Plan:
+    """The plan, whose search tells of what is known alone: what is expected besides is no disc known then."""
+    return replace(plan, search=replace(plan.search, centres=problem.centres, radii=problem.keep))
 
 
 def _excess(problem: WaypointProblem, waypoints: Corners) -> float:

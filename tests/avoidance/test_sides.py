@@ -82,6 +82,15 @@ def test_an_end_that_nobody_has_seen_is_taken_to_go_on() -> None:
     assert more[:, 1].max() <= 6000.0 + 9000.0
 
 
+def test_what_is_expected_is_not_told_as_known() -> None:
+    """Yardsticks are computed from what a search tells: a hill that is not there would flatter a detour."""
+    question, sides = hill(wall(-3000.0, 6000.0)), looking((0.0, -3000.0), (600.0, -3000.0))
+    plan = sides.way(way_round)(question, np.random.default_rng(0))
+    assert plan is not None
+    assert plan.search.centres is question.centres
+    assert plan.search.radii is question.keep
+
+
 def test_a_hill_whose_ends_were_seen_is_what_it_is() -> None:
     question = hill(wall(-3000.0, 6000.0))
     assert looking((7000.0, -3000.0), (7000.0, 6000.0)).extended(question) is question
