@@ -124,11 +124,11 @@ class Sides:
 
     def open_ahead(self, problem: WaypointProblem) -> bool:
         """True while the end of the hill on the side chosen lies where nobody has looked."""
+        ends = self._open_ends(problem)
+        if not ends:
+            return False
         middle = problem.centres[problem.avoided].mean(axis=0)
-        return any(
-            _across(problem, problem.centres[row] - middle) * self._side > 0.0
-            for row, _ in self._open_ends(problem)
-        )
+        return any(_across(problem, problem.centres[row] - middle) * self._side > 0.0 for row, _ in ends)
 
     def _open_ends(self, problem: WaypointProblem) -> list[tuple[int, Floats]]:
         """Ends of the hill avoided, as rows of the problem, with the centres expected behind each."""

@@ -96,6 +96,13 @@ def test_a_hill_whose_ends_were_seen_is_what_it_is() -> None:
     assert looking((7000.0, -3000.0), (7000.0, 6000.0)).extended(question) is question
 
 
+@pytest.mark.filterwarnings("error")
+def test_a_hill_that_is_not_known_any_more_has_no_end() -> None:
+    """Tracks die, and radars rename them: nothing is left of what was gone round."""
+    question = replace(problem([(9000.0, 0.0)]), avoided=np.empty(0, dtype=np.int64))
+    assert not looking((0.0, 0.0)).open_ahead(question)
+
+
 def test_a_short_hill_is_what_it_is() -> None:
     question = hill(wall(-1500.0, 1500.0))
     assert looking((0.0, 0.0)).extended(question) is question
