@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from avoidance.types import Floats
-from scenarios.walled import Shapes
+from scenarios.walled import Shapes, crossing_shares
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,14 +71,8 @@ class Rims:
 
     def _of_lines(self) -> Floats:
         i, j = np.triu_indices(len(self.starts), k=1)
-        one, other, between = self.steps[i], self.steps[j], self.starts[j] - self.starts[i]
-        determinant = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
-        safe = np.where(determinant == 0.0, 1.0, determinant)
-        with np.errstate(over="ignore", invalid="ignore"):  # almost parallel: far beyond the ends
-            s = (between[:, 0] * other[:, 1] - between[:, 1] * other[:, 0]) / safe
-            t = (between[:, 0] * one[:, 1] - between[:, 1] * one[:, 0]) / safe
-        cut = (determinant != 0.0) & (s >= 0.0) & (s <= 1.0) & (t >= 0.0) & (t <= 1.0)
-        found: Floats = self.starts[i[cut]] + s[cut, None] * one[cut]
+        share, cut = crossing_shares(self.starts[i], self.steps[i], self.starts[j], self.steps[j])
+        found: Floats = self.starts[i[cut]] + share[cut, None] * self.steps[i[cut]]
         return found
 
     def _of_both(self) -> Floats:

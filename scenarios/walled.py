@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from avoidance.types import Floats
+from avoidance.types import Bools, Floats
 from scenarios.fence import FenceArea
 
 Ints = NDArray[np.intp]
@@ -196,15 +196,39 @@ def _closest(a: Floats, b: Floats, c: Floats, d: Floats) -> tuple[Floats, Floats
     best = np.argmin(_off(here - there), axis=0)
     row = np.arange(len(a))
     here, there = here[best, row], there[best, row]
-    one, other, between = b - a, d - c, c - a
-    determinant = one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]
+    one = b - a
+    share, cut = crossing_shares(a, one, c, d - c)
+    crossing = a + share[:, None] * one
+    return np.where(cut[:, None], crossing, here), np.where(cut[:, None], crossing, there)
+
+
+def crossing_shares(
+    begins: Floats, steps: Floats, others: Floats, other_steps: Floats
+) -> tuple[Floats, Bools]:
+    """Where pieces of straight line cross, pair by pair.
+
+    Parameters
+    ----------
+    begins, steps : array, shape (k, 2)
+        Of the first of each pair, and from there to its end [m].
+    others, other_steps : array, shape (k, 2)
+        Of the second.
+
+    Returns
+    -------
+    shares : array, shape (k,)
+        Of the first one's step; 0 where they do not cross.
+    cut : array, shape (k,)
+        True where they do.
+    """
+    between = others - begins
+    determinant = steps[:, 0] * other_steps[:, 1] - steps[:, 1] * other_steps[:, 0]
     safe = np.where(determinant == 0.0, 1.0, determinant)
     with np.errstate(over="ignore", invalid="ignore"):  # almost parallel: far beyond the ends
-        s = (between[:, 0] * other[:, 1] - between[:, 1] * other[:, 0]) / safe
-        t = (between[:, 0] * one[:, 1] - between[:, 1] * one[:, 0]) / safe
+        s = (between[:, 0] * other_steps[:, 1] - between[:, 1] * other_steps[:, 0]) / safe
+        t = (between[:, 0] * steps[:, 1] - between[:, 1] * steps[:, 0]) / safe
     cut = (determinant != 0.0) & (s >= 0.0) & (s <= 1.0) & (t >= 0.0) & (t <= 1.0)
-    crossing = a + np.where(cut, s, 0.0)[:, None] * one
-    return np.where(cut[:, None], crossing, here), np.where(cut[:, None], crossing, there)
+    return np.where(cut, s, 0.0), cut
 
 
 def _off(vectors: Floats) -> Floats:
