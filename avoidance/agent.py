@@ -184,7 +184,7 @@ class Agent:
             known = to_be_avoided(own, route, known, self._performance)
         gap = Gap.of(own, route, known, blocked, self._performance, self._parameters)
         if not (blocked.threat.moving or self._holding) and self._no_way.lasts(own, route, self._version):
-            return self._wait(gap)
+            return self._without_way(gap)
         still = self._parameters.memory and not blocked.threat.moving
         way = way_with_orbits(gap, self._sides.way(self._way) if still else self._way, self._rng)
         if way is not None:
@@ -199,13 +199,18 @@ class Agent:
             walled_in = self._move(gap)
             if walled_in is not None:
                 return walled_in
-        self._retry_at = own.time + RETRY
         self._no_way = self._no_way.again(own, route, self._version)
+        return self._without_way(gap)
+
+    def _without_way(self, gap: Gap) -> Decision:
+        """What to do as long as no way round is known; it is thought over again after a while."""
+        threat = gap.blocked.threat
+        self._retry_at = gap.own.time + RETRY
         if self._holding and self._cut_off(gap):
             return self._hold(gap)
-        if blocked.threat.moving or (gap.begin > 0 and blocked.threat.distance > LATER):
-            words = f"{threat_words(blocked.threat)}; no way round is known yet"
-            return Keep(why=words, threat=blocked.threat, rung=Rung.ORBIT)
+        if threat.moving or (gap.begin > 0 and threat.distance > LATER):
+            words = f"{threat_words(threat)}; no way round is known yet"
+            return Keep(why=words, threat=threat, rung=Rung.ORBIT)
         return self._wait(gap)
 
     def _choose_again(self, own: Ownship, route: Route, known: Known) -> Decision | None:

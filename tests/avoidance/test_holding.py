@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from avoidance import Contact, Ownship, Performance, RadarScan, Route, Waypoint
 from avoidance.agent import Agent
 from avoidance.holding import FIRST_WAIT, LONGEST_WAIT, NoWay
-from avoidance.parameters import PAPER
+from avoidance.parameters import DEFAULT, PAPER
 
 ROUTE = Route(Waypoint(0.0, 0.0, 200.0), (Waypoint(9000.0, 0.0, 200.0, item=0),))
 
@@ -46,3 +48,35 @@ def test_a_dead_end_far_ahead_is_not_thought_over_at_every_scan() -> None:
     said = [agent.decide(at(t), route, RadarScan.of(t, contacts)) for t in map(float, range(60))]
     assert all(decision.name == "keep" and decision.threat for decision in said[-10:])
     assert 3 <= len(asked) <= 8
+
+
+ALONE = Performance(
+    airspeed=15.0, max_bank=0.5236, roll_time=1.3, acceptance_radius=100.0, tracking_error=5.0
+)
+
+
+def test_a_later_leg_far_ahead_does_not_stop_the_vehicle_while_it_is_not_thought_over() -> None:
+    legs = (Waypoint(4000.0, 0.0, 200.0, item=0), Waypoint(40_000.0, 0.0, 200.0, item=1))
+    route, ahead = Route(ROUTE.origin, legs), [Contact(1, 9000.0, 0.0, 200.0)]
+    agent = Agent(ALONE, way=lambda problem, _: None)
+    said = [agent.decide(at(t), route, RadarScan.of(t, ahead)) for t in map(float, range(60))]
+    assert {decision.name for decision in said} == {"keep"}
+    assert any("no way round is known yet" in decision.why for decision in said)
+
+
+def test_whoever_comes_to_hold_later_than_no_way_was_found_asks_again() -> None:
+    """Walls left no room to hold in when the search was made; behind them there is."""
+    walls = [(200.0 * k, side * 1050.0) for k in range(-12, 5) for side in (-1, 1)]
+    contacts = [Contact(k, *place, 200.0) for k, place in enumerate([*walls, (7200.0, 0.0)])]
+    route = Route(ROUTE.origin, (Waypoint(40_000.0, 0.0, 200.0),))
+    asked: list[float] = []
+    rules = replace(DEFAULT, pop_up_room=None)  # else it would not be in there
+    agent = Agent(ALONE, rules, way=lambda problem, _: asked.append(0.0))
+    held, before = None, 0
+    for t in map(float, range(200)):
+        own = replace(at(t if held is None else held), time=t)
+        if agent.decide(own, route, RadarScan.of(t, contacts)).name == "hold":
+            held, before = t, len(asked)
+    assert held is not None
+    assert held > 20.0
+    assert len(asked) > before + 5
