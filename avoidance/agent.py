@@ -269,16 +269,16 @@ class Agent:
     def _hold(self, gap: Gap) -> Decision:
         """Wait at a rally point that can be reached, else here as soon as there is room to."""
         threat = gap.blocked.threat
-        self._refuge = self._rally.nearest(gap.own, gap.known)
-        if self._refuge is not None:
-            self._holding = True
-            return self._rally.hold(gap.own, self._refuge, gap.blocked)
+        refuge = self._rally.nearest(gap.own, gap.known)
+        if refuge is not None:
+            self._holding, self._refuge = True, refuge
+            return self._rally.hold(gap.own, refuge, gap.blocked)
         orbit = orbit_from_here(gap.own, gap.known, self._performance)
         if orbit.clearance < 0.0 and threat.distance > LAST_MOMENT * self._performance.turn_radius:
             self._retry_at = gap.own.time
             words = f"{threat_words(threat)}; hold as soon as there is room to"
             return Keep(why=words, threat=threat, rung=Rung.ORBIT)
-        self._holding = True
+        self._holding, self._refuge = True, None
         return hold_on(gap.own, orbit, gap.blocked)
 
     def _resume(self, own: Ownship, route: Route, known: Known) -> Decision:

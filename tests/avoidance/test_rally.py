@@ -71,7 +71,9 @@ def flight(*rally: Waypoint) -> tuple[Agent, Lost]:
     return Agent(PERFORMANCE, DEFAULT, way=planner, rally=rally), planner
 
 
-def decided(agent: Agent, begin: int, end: int, *obstacles: tuple[float, float, float]) -> list[Decision]:
+def decided(
+    agent: Agent, begin: int, end: int, *obstacles: tuple[float, float, float], east: float = 0.0
+) -> list[Decision]:
     """What is decided in some seconds, on the spot: no `Keep`, the route is the mission's."""
     rows = [(*AHEAD, 1000.0), *obstacles]
     found = []
@@ -80,7 +82,7 @@ def decided(agent: Agent, begin: int, end: int, *obstacles: tuple[float, float, 
         sweep = RadarScan(
             float(second), np.arange(1, len(rows) + 1), table, np.array([radius for *_, radius in rows])
         )
-        found.append(agent.decide(ownship(time=float(second)), route((20_000.0, 0.0)), sweep))
+        found.append(agent.decide(ownship(east=east, time=float(second)), route((20_000.0, 0.0)), sweep))
     return [decision for decision in found if not isinstance(decision, Keep)]
 
 
@@ -106,6 +108,16 @@ def test_what_comes_into_the_way_sends_it_to_the_next() -> None:
     (again,) = decided(agent, 10, 20, (NEAR.north, NEAR.east, 300.0))
     assert isinstance(again, Hold)
     assert again.centre == FAR
+
+
+def test_cut_off_where_there_is_no_room_to_wait_it_waits_as_soon_as_there_is() -> None:
+    agent, _ = flight(NEAR)
+    decided(agent, 0, 10)
+    shut = (NEAR.north, NEAR.east, 300.0), (30.0, 160.0, 100.0), (30.0, -160.0, 100.0)
+    assert decided(agent, 10, 20, *shut) == []
+    (hold,) = decided(agent, 20, 30, *shut, east=500.0)
+    assert isinstance(hold, Hold)
+    assert hold.centre.north == pytest.approx(0.0, abs=100.0)
 
 
 def test_what_comes_elsewhere_does_not() -> None:
