@@ -110,7 +110,7 @@ def _cheapest(problem: WaypointProblem, plan: Plan, rng: np.random.Generator) ->
     if plan.rung is not Rung.CLOSE and length - least >= relaxing:
         close = replace(problem, relaxed=RUNGS[-1][1], longest=length - relaxing)
         search = search_waypoint(close, rng)
-        if search.found is not None:
+        if search.found is not None and _length(problem, (search.found,)) < close.longest:
             plan = Plan(Rung.CLOSE, (search.found,), search)
             length = _length(problem, plan.waypoints)
     if length - least < several:

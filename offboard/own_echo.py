@@ -16,7 +16,9 @@ ALIKE = 5.0
 REPORTS = 3
 """A newcomer that coincides so often in a row is an echo; until then it is held back ..."""
 REPORTS_AFTER = 10
-"""... and so often one that has been seen elsewhere."""
+"""... and so often one that has not coincided: in a turn an old report does not."""
+ELSEWHERE = 500.0
+"""Who has been seen this far from the vehicle is somebody else, and comes near [m]."""
 SAME_ADDRESS = 1000.0
 """Our own address counts only this near: addresses are set by hand, and set twice [m]."""
 NO_ADDRESS = frozenset({0, 1194684})
@@ -30,6 +32,8 @@ class _Count:
     together: int = 0
     """Reports in a row that coincide."""
     apart: bool = False
+    """It has not coincided at some time."""
+    somebody: bool = False
     """It has been seen elsewhere."""
     last: float = -math.inf
     """Time of the last report that counted [s]."""
@@ -75,6 +79,9 @@ class OwnEcho:
         count = self._counts.setdefault(report.id, _Count())
         if not (away < NEAR + speed and level and unlike < ALIKE):
             count.together, count.apart = 0, True
+            count.somebody |= away > ELSEWHERE
+            return False
+        if count.somebody:
             return False
         if report.time > count.last + 0.5:
             count.together += 1

@@ -60,6 +60,19 @@ def test_who_comes_near_is_not_taken_for_us_before_many_reports():
     assert not any(verdicts(echo, closing))
 
 
+def test_who_has_come_from_afar_and_flies_beside_us_stays_traffic():
+    """A slow overtaker with nearly our velocity: however often it is reported next to us."""
+    slowly = [report(float(t), north=min(-600.0 + 15.0 * t, 0.0), velocity=(18.0, 0.0)) for t in range(80)]
+    assert not any(verdicts(OwnEcho(), slowly))
+
+
+def test_an_echo_that_is_late_in_a_turn_is_us_again_afterwards():
+    echo = OwnEcho()
+    turn = [report(float(t), velocity=(12.0, 9.0)) for t in range(3)]
+    after = [report(float(t)) for t in range(3, 20)]
+    assert verdicts(echo, [*turn, *after])[-1]
+
+
 def test_an_echo_that_leaves_us_is_an_intruder_at_once():
     echo = OwnEcho()
     verdicts(echo, [report(float(t)) for t in range(5)])
