@@ -17,6 +17,7 @@ MISSION_TOTAL = "MIS_TOTAL"
 """Number of items, home included; told whenever it changes."""
 
 _TABLE: dict[str, Value] = {
+    "ADSB_ICAO_ID": (INT32, 0),
     "AIRSPEED_CRUISE": (REAL32, 15.0),
     "AIRSPEED_MAX": (REAL32, 25.0),
     "AIRSPEED_MIN": (REAL32, 12.0),

@@ -53,6 +53,7 @@ def _auto(name: str, sub: int, task: Task) -> Mode:
 
 
 _TABLE: dict[str, Value] = {
+    "ADSB_ICAO_ID": (INT32, 1194684),
     "BAT1_N_CELLS": (INT32, 4),
     "CBRK_FLIGHTTERM": (INT32, 121212),
     "COM_DISARM_LAND": (REAL32, 2.0),

@@ -41,7 +41,9 @@ def test_a_users_fmu_avoids_an_obstacle(folder, tmp_path):
     assert done.exit_code == 0, done.output
     summary = json.loads(done.stdout)
     assert (summary["violations"], summary["completed"]) == (0, True)
-    assert summary["min_separation_m"] == pytest.approx(550.0, abs=15.0)
+    assert (
+        540.0 < summary["min_separation_m"] < 600.0
+    )  # the margin of its wide turns, and what they overshoot
     assert summary["flight_time_s"] == pytest.approx(5500.0 / 27.0, rel=0.05)
     assert summary["state_of_charge"] is None
     assert load(tmp_path / "run" / "scenario.toml").vehicle.plant == folder / "mapping.toml"
