@@ -39,11 +39,9 @@ Corners: TypeAlias = tuple[tuple[float, float], ...]
 LARGEST_CORNER = math.radians(15.0)
 """Heading change of a corner of an exact route [rad]."""
 
-CORNER_CUT = 0.12
-"""By how much circles are widened at first, in acceptance radii: turns of `LARGEST_CORNER` cut so much."""
-PADS = (0.02, 0.5, 1.0, 2.0, 4.0)
-"""By how much they are widened, in turn radii, where that leads to no route that can be flown: hardly, for
-the start may lie next to a circle; then ever more."""
+PADS = (0.5, 0.025, 1.0, 2.0, 4.0)
+"""By how much circles are widened in turn, in turn radii, until the route can be flown: turns of
+`LARGEST_CORNER` cut a little; next to a circle there is hardly any room; then ever more."""
 
 ROOM_LEFT = 50.0
 """A separation from an intruder is worth a change of route if it is better by this [m]."""
@@ -212,15 +210,14 @@ def exact_route(problem: WaypointProblem, longest: float = math.inf) -> Corners 
     performance = problem.performance
     free_start = point_distances(problem.centres, problem.start) - 0.5
     free_target = point_distances(problem.centres, problem.target) - 0.5
-    pads = (1.0 + CORNER_CUT * performance.acceptance_radius, *np.multiply(PADS, performance.turn_radius))
-    for pad in pads:
+    for pad in np.multiply(PADS, performance.turn_radius).tolist():
         radii = np.maximum(np.minimum(np.minimum(problem.keep + pad, free_start), free_target), 0.0)
         walls = replace(problem.walls, room=problem.walls.room + pad)
         path = shortest_path(problem.start, problem.target, problem.centres, radii, walls, longest)
-        if path is None and pad > pads[0]:
-            return None
+        if path is None and pad == PADS[0] * performance.turn_radius:
+            continue  # there may be one that is narrower
         if path is None:
-            continue
+            return None
         corners = path.polyline(LARGEST_CORNER)
         if flyable(problem, corners):
             inner = corners[1:-1]
