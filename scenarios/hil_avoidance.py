@@ -7,7 +7,6 @@ process of its own and reaches the autopilot over MAVLink, as it would in flight
 from __future__ import annotations
 
 import math
-import signal
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -81,9 +80,12 @@ class Together:
 
 
 def end(process: subprocess.Popen[bytes]) -> int:
-    """Ask the other process to write its run, wait for it; its exit code."""
+    """Ask the other process to write its run, wait for it; its exit code.
+
+    By SIGTERM, which it takes as Ctrl-C: SIGINT is ignored where a script has started us in the background.
+    """
     if process.poll() is None:
-        process.send_signal(signal.SIGINT)
+        process.terminate()
     try:
         return process.wait(_PATIENCE)
     except subprocess.TimeoutExpired:

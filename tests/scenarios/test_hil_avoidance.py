@@ -84,6 +84,10 @@ def test_the_plants_files_are_files_of_a_run(tmp_path):
 
 
 PATIENT = """
+import signal
+
+signal.signal(signal.SIGINT, signal.SIG_IGN)  # as in the background of a script
+signal.signal(signal.SIGTERM, signal.default_int_handler)
 try:
     print("up", flush=True)
     input()
