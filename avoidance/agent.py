@@ -219,9 +219,10 @@ class Agent:
         if doubt is None or self._holding:
             return None
         gap = Gap.of(own, route, known, doubt, self._performance, self._parameters)
-        way = way_with_orbits(gap, self._way, self._rng)
+        way = way_with_orbits(gap, self._sides.way(self._way), self._rng)
         if not isinstance(way, Detour) or way.rung is not Rung.WAYPOINT:
             return None
+        self._sides.chosen(gap.problem, doubt, gap.taken(way))
         self._avoiding |= frozenset(doubt.threat.ids)
         return replace(way, why=second_words(doubt.threat, way))
 

@@ -63,6 +63,10 @@ class Plan:
     """New waypoints in order, north and east [m]."""
     search: Search
     """The waypoint search made first (with every constraint), or the one that found the waypoint."""
+    saved: float = 0.0
+    """How much longer the way on an earlier rung is that it was preferred to [m]; 0 if there was none."""
+    expecting: bool = False
+    """True if what it goes round is expected to go on where nobody has looked."""
 
 
 Way = Callable[[WaypointProblem, np.random.Generator], Plan | None]
@@ -103,18 +107,18 @@ def _cheapest(problem: WaypointProblem, plan: Plan, rng: np.random.Generator) ->
     if len(problem.intruders) > 1 and length - straight > LONG_WAY:
         route, lacking = _through_traffic(problem, rng)
         if route is not None and lacking <= 0.0 and _length(problem, route) < length - several:
-            return Plan(Rung.ROUTE, route, plan.search)
-    least = _at_least(problem)
+            return Plan(Rung.ROUTE, route, plan.search, length - _length(problem, route))
+    first, least = length, _at_least(problem)
     if plan.rung is not Rung.CLOSE and length - least >= relaxing:
         close = replace(problem, relaxed=RUNGS[-1][1], longest=length - relaxing)
         search = search_waypoint(close, rng)
         if search.found is not None and _length(problem, (search.found,)) < close.longest:
-            plan = Plan(Rung.CLOSE, (search.found,), search)
-            length = _length(problem, plan.waypoints)
+            length = _length(problem, (search.found,))
+            plan = Plan(Rung.CLOSE, (search.found,), search, first - length)
     if length - least < several:
         return plan
     route = _kept_from_intruders(problem, exact_route(problem, length - several))
-    return plan if not route else Plan(Rung.ROUTE, route, plan.search)
+    return plan if not route else Plan(Rung.ROUTE, route, plan.search, first - _length(problem, route))
 
 
 def _at_least(problem: WaypointProblem) -> float:
@@ -158,13 +162,13 @@ def widest_way(problem: WaypointProblem, rng: np.random.Generator, lacking: floa
 
     Notes
     -----
-    First with little more than the violation radius instead of d + h; then the least violating way of one or
-    of two waypoints that is clear of all that stands still.
+    First with the present estimate taken as sure, without the doubt about it; then the least violating way of
+    one or of two waypoints that is clear of all that stands still.
     """
     intruders = problem.intruders
     surely = np.zeros(len(intruders))
-    close = replace(intruders, margin=min(intruders.margin, ROOM_LEFT), sigma=surely, speed_sigma=surely)
-    plan = way_round(replace(problem, intruders=close), rng)
+    sure = replace(intruders, sigma=surely, speed_sigma=surely)
+    plan = way_round(replace(problem, intruders=sure), rng)
     if plan is not None:
         return plan
     search = search_waypoint(replace(problem, relaxed=RUNGS[-1][1]), rng)

@@ -26,7 +26,7 @@ from avoidance.types import Decision, Floats, Ownship, RadarScan, Route, Threat
 from avoidance.words import obstacles
 
 LONG = 6000.0
-"""A hill shorter than this is taken to end where nothing more of it is seen [m]."""
+"""A hill shorter than this is taken to end where nothing more of it is seen, and either side is taken [m]."""
 ONWARD = 1.0
 """How much further an unseen end of a hill is taken to go on, in lengths of what is known of it."""
 FURTHEST = 20_000.0
@@ -94,8 +94,8 @@ class Sides:
             return None
         for leg, waypoint in enumerate(route.waypoints):
             if waypoint.item is None and (waypoint.north, waypoint.east) in self._put_in:
-                threat = replace(self._expected.threat, leg=leg)
-                return Blocked(threat, leg, np.flatnonzero(np.isin(known.ids, threat.ids)))
+                near = (distances(known.centres, self._hill) < SAME_PLACE).any(axis=1)
+                return Blocked(replace(self._expected.threat, leg=leg), leg, np.flatnonzero(near))
         self._expected = None
         return None
 
@@ -161,7 +161,7 @@ class Sides:
         return np.empty((0, 2)) if seen else places
 
     def _passing(self, problem: WaypointProblem) -> bool:
-        """True if the hill is the one that is being passed already."""
+        """True if the hill is a long one and the one that is being passed already."""
         if self._ends is None or self._side == 0.0 or not len(self._hill) or len(problem.intruders):
             return False
         then, now = self._ends[0], _fixed_start(problem)
@@ -169,7 +169,9 @@ class Sides:
         if moved or math.dist(problem.target, self._ends[1]) > SAME_PLACE:
             return False
         hill = problem.centres[problem.avoided]
-        return bool(len(hill)) and bool((distances(hill, self._hill) < SAME_PLACE).any())
+        if not len(hill) or float(distances(hill, hill).max()) < LONG:
+            return False
+        return bool((distances(hill, self._hill) < SAME_PLACE).any())
 
 
 def end_words(threat: Threat, decision: Decision) -> str:
@@ -212,7 +214,8 @@ def _fixed_start(problem: WaypointProblem) -> tuple[float, float] | None:
 
 def _told_of(plan: Plan, problem: WaypointProblem) -> Plan:
     """The plan, whose search tells of what is known alone: what is expected besides is no disc known then."""
-    return replace(plan, search=replace(plan.search, centres=problem.centres, radii=problem.keep))
+    known = replace(plan.search, centres=problem.centres, radii=problem.keep)
+    return replace(plan, search=known, expecting=True)
 
 
 def _excess(problem: WaypointProblem, waypoints: Corners) -> float:

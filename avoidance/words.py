@@ -15,6 +15,12 @@ GIVEN_UP = {
     Rung.CLOSE: "; no point outside the tolerance serves, only the safety margin is kept",
     Rung.ROUTE: "; no single waypoint serves",
 }
+"""Why the way is not found on the first rung."""
+SHORTER = {
+    Rung.CLOSE: "; {:.0f} m shorter than outside the tolerance, only the safety margin is kept",
+    Rung.ROUTE: "; {:.0f} m shorter than by a single waypoint",
+}
+"""Why it is preferred to one that was."""
 
 
 def obstacles(ids: tuple[int, ...]) -> str:
@@ -60,8 +66,10 @@ def detour_words(threat: Threat, plan: Plan) -> str:
     side = _side(start, plan.waypoints[0], target)
     count = "" if len(plan.waypoints) == 1 else f" by {len(plan.waypoints)} waypoints"
     searched = plan.search.iterations > 0  # else a route was wanted from the first
-    given_up = GIVEN_UP.get(plan.rung, "") if searched else ""
-    return f"{threat_words(threat)}; pass {side}{count}, {added:.0f} m longer{given_up}"
+    given_up = SHORTER if plan.saved > 0.0 else GIVEN_UP
+    reason = given_up.get(plan.rung, "").format(plan.saved) if searched else ""
+    beyond = "; more of it is expected where nobody has looked yet" if plan.expecting else ""
+    return f"{threat_words(threat)}; pass {side}{count}, {added:.0f} m longer{reason}{beyond}"
 
 
 def replace_words(original: Waypoint, chosen: Waypoint | None, ids: tuple[int, ...]) -> str:

@@ -56,14 +56,19 @@ def test_a_barrier_leaves_one_side(side: float) -> None:
 
 
 def test_a_side_is_kept_though_the_other_is_a_little_shorter() -> None:
-    sides = looking((0.0, 0.0))
-    before, after = hill(wall(-1500.0, 0.0)), hill(wall(-1500.0, 3000.0))
+    before = hill(wall(-1500.0, 0.0))
+    long = hill([*wall(-4500.0, 4500.0), (9000.0, 5200.0)])
+    sides = looking((7000.0, -4500.0), (7000.0, 5200.0))
     assert chosen(before, sides) == 1.0
-    assert chosen(after, sides) == -1.0  # the shorter one, without a memory
+    assert chosen(long, sides) == -1.0  # the shorter one, without a memory
     sides.chosen(before, blocked(), ((9000.0, 1100.0),))
-    nearly = hill([*wall(-1500.0, 1500.0), (9000.0, 2200.0)])
-    assert chosen(nearly, looking((0.0, 0.0))) == -1.0
-    assert chosen(nearly, sides) == 1.0
+    assert chosen(long, sides) == 1.0
+
+
+def test_a_short_hill_is_passed_on_the_shorter_side_whatever_was_chosen_before() -> None:
+    sides = looking((0.0, 0.0))
+    sides.chosen(hill(wall(-1500.0, 0.0)), blocked(), ((9000.0, 1100.0),))
+    assert chosen(hill([*wall(-1500.0, 1500.0), (9000.0, 2200.0)]), sides) == -1.0
 
 
 def test_a_side_is_left_for_one_that_is_much_shorter() -> None:
