@@ -9,10 +9,10 @@ from dataclasses import replace
 import numpy as np
 
 from avoidance.conflicts import first_conflict, to_be_avoided
-from avoidance.contingency import first_trap, orbit_from_here
+from avoidance.contingency import first_trap
 from avoidance.escape import Escape
 from avoidance.geofence import OPEN, Geofence
-from avoidance.holding import NoWay, hold_on, holding_words, skipped
+from avoidance.holding import NoWay, Vigil, no_room_yet, skipped
 from avoidance.known import Known, keep_what_can_be_kept, kept_margin, known_obstacles, within_fence
 from avoidance.ladder import Way, way_round
 from avoidance.parameters import DEFAULT, Parameters
@@ -40,16 +40,10 @@ from avoidance.types import (
 from avoidance.words import obstacles, threat_words
 
 CLEAR = Keep(why="the route is clear")
-PATIENCE = 20
-"""A mission item that no route leads to is skipped after so many attempts from a holding orbit."""
 RETRY = 3.0
 """While holding, or while a later leg is blocked, a way is looked for again after this time [s]."""
-
-
 LATER = 2000.0
 """A later leg that is blocked further ahead than this does not stop the vehicle yet [m]."""
-LAST_MOMENT = 4.0
-"""Nearer to what blocks the way than this many turn radii the vehicle turns, whatever the orbit's room."""
 
 
 class Agent:
@@ -99,14 +93,11 @@ class Agent:
         self._replacements = Replacements(performance, parameters, geofence)
         self._second_thoughts = SecondThoughts()
         self._sides = Sides()
-        self._rally = Rally(rally, performance, parameters)
-        self._refuge: Waypoint | None = None
+        self._vigil = Vigil(Rally(rally, performance, parameters))
         self._checked: int | None = None
-        self._failures = 0
         self._checked_route: Route | None = None
         self._avoiding: frozenset[int] = frozenset()
         self._version = 0
-        self._holding = False
         self._retry_at = -math.inf
         self._no_way = NoWay()
         self._rest_version = -1
@@ -134,15 +125,18 @@ class Agent:
         if not route.waypoints:
             return CLEAR
         traffic = bool(picture.moving.any())
+        self._vigil.look(route)
         self._version = picture.version
-        unchanged = self._checked == picture.version and (self._holding or self._checked_route is route)
+        unchanged = self._checked == picture.version and (
+            self._vigil.under_way or self._checked_route is route
+        )
         if unchanged and not traffic and own.time < self._retry_at:
             return CLEAR
         self._replacements.learn(route)
         known = known_obstacles(picture, own, route, self._performance, self._parameters)
         known = within_fence(known, self._geofence, own, self._parameters)
         at_rest = self._rest_version == picture.version and self._rest_route is route
-        watching = traffic and at_rest and not self._holding
+        watching = traffic and at_rest and not self._vigil.under_way
         decision = self._watch(own, route, known) if watching else self._decide(own, route, known)
         self._second_thoughts.learn(decision, known)
         if decision is CLEAR:
@@ -150,7 +144,7 @@ class Agent:
         if isinstance(decision, Keep | Hold):
             self._checked_route, self._checked = route, picture.version
         if decision.route is not None:
-            self._holding, self._refuge = False, None  # a new route ends a hold
+            self._vigil.stop()  # a new route ends a hold
         return decision
 
     def _watch(self, own: Ownship, route: Route, known: Known) -> Decision:
@@ -183,7 +177,9 @@ class Agent:
         if blocked.threat.moving:
             known = to_be_avoided(own, route, known, self._performance)
         gap = Gap.of(own, route, known, blocked, self._performance, self._parameters)
-        if not (blocked.threat.moving or self._holding) and self._no_way.lasts(own, route, self._version):
+        if not (blocked.threat.moving or self._vigil.under_way) and self._no_way.lasts(
+            own, route, self._version
+        ):
             return self._without_way(gap)
         still = self._parameters.memory and not blocked.threat.moving
         way = way_with_orbits(gap, self._sides.way(self._way) if still else self._way, self._rng)
@@ -192,8 +188,7 @@ class Agent:
                 self._sides.chosen(gap.problem, blocked, gap.taken(way))
             self._avoiding = frozenset(blocked.threat.ids)
             self._traffic.avoiding(blocked.threat.ids)
-            self._holding = False
-            self._failures = 0
+            self._vigil.end()
             return way
         if gap.target.item is not None and not blocked.threat.moving:
             walled_in = self._move(gap)
@@ -206,7 +201,7 @@ class Agent:
         """What to do as long as no way round is known; it is thought over again after a while."""
         threat = gap.blocked.threat
         self._retry_at = gap.own.time + RETRY
-        if self._holding and self._cut_off(gap):
+        if self._vigil.under_way and self._vigil.cut_off(gap):
             return self._hold(gap)
         if threat.moving or (gap.begin > 0 and threat.distance > LATER):
             words = f"{threat_words(threat)}; no way round is known yet"
@@ -216,7 +211,7 @@ class Agent:
     def _choose_again(self, own: Ownship, route: Route, known: Known) -> Decision | None:
         """Another waypoint that meets every constraint, where one put in no longer does."""
         doubt = self._second_thoughts.first(own, route, known)
-        if doubt is None or self._holding:
+        if doubt is None or self._vigil.under_way:
             return None
         gap = Gap.of(own, route, known, doubt, self._performance, self._parameters)
         way = way_with_orbits(gap, self._sides.way(self._way), self._rng)
@@ -228,7 +223,7 @@ class Agent:
 
     def _round_the_end(self, own: Ownship, route: Route, known: Known) -> Decision | None:
         """A shorter way where more of a hill was expected than there is: its end has come into view."""
-        hill = None if self._holding else self._sides.expected(route, known)
+        hill = None if self._vigil.under_way else self._sides.expected(route, known)
         if hill is None:
             return None
         gap = Gap.of(own, route, known, hill, self._performance, self._parameters)
@@ -249,44 +244,26 @@ class Agent:
 
     def _wait(self, gap: Gap) -> Decision:
         """Hold in free space, or fly on until there is room to; after a while give the waypoint up."""
-        threat = gap.blocked.threat
-        if self._holding:
-            self._failures += 1
-            if self._failures > PATIENCE and gap.target.item is not None:
-                self._failures = 0
-                moved = self._move(gap) if self._replacements.ask_for_wide_ways(gap.target) else None
-                if moved is not None:
-                    return moved
-                self._holding = False
-                return skipped(gap.route, gap.blocked, gap.end)
-            return Keep(why=holding_words(gap.blocked), threat=threat, rung=Rung.ORBIT)
-        return self._hold(gap)
-
-    def _cut_off(self, gap: Gap) -> bool:
-        """True if something has come into the way to the rally point that is flown to."""
-        refuge = self._refuge
-        return refuge is not None and not self._rally.free(gap.own, refuge, gap.known, flown=True)
+        if not self._vigil.under_way:
+            return self._hold(gap)
+        if not self._vigil.tired(gap.own) or gap.target.item is None:
+            return self._vigil.words(gap)
+        self._vigil.end()
+        moved = self._move(gap) if self._replacements.ask_for_wide_ways(gap.target) else None
+        return skipped(gap.route, gap.blocked, gap.end) if moved is None else moved
 
     def _hold(self, gap: Gap) -> Decision:
         """Wait at a rally point that can be reached, else here as soon as there is room to."""
-        threat = gap.blocked.threat
-        refuge = self._rally.nearest(gap.own, gap.known)
-        if refuge is not None:
-            self._holding, self._refuge = True, refuge
-            return self._rally.hold(gap.own, refuge, gap.blocked)
-        orbit = orbit_from_here(gap.own, gap.known, self._performance)
-        if orbit.clearance < 0.0 and threat.distance > LAST_MOMENT * self._performance.turn_radius:
+        hold = self._vigil.begin(gap)
+        if hold is None:
             self._retry_at = gap.own.time
-            words = f"{threat_words(threat)}; hold as soon as there is room to"
-            return Keep(why=words, threat=threat, rung=Rung.ORBIT)
-        self._holding, self._refuge = True, None
-        return hold_on(gap.own, orbit, gap.blocked)
+            return no_room_yet(gap.blocked)
+        return hold
 
     def _resume(self, own: Ownship, route: Route, known: Known) -> Decision:
         """End a hold, or undo a detour whose reason has gone: the intruder passed, a false track died."""
-        if self._holding:
-            self._holding = False
-            self._failures = 0
+        if self._vigil.under_way:
+            self._vigil.end()
             return Resume(why="the way is clear again", route=route.waypoints)
         direct = tuple(w for w in route.waypoints if w.item is not None)
         if direct == route.waypoints:

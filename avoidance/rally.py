@@ -74,12 +74,21 @@ class Rally:
             own, Route(Waypoint(own.north, own.east, own.altitude), (point,)), known, flown
         )
 
+    def at(self, own: Ownship, point: Waypoint) -> bool:
+        """True if the vehicle is where it waits at a rally point: on the circle, or turning on to it."""
+        away = math.hypot(point.north - own.north, point.east - own.east)
+        return away <= self.radius + orbit_reach(self._performance, WIDE)
+
+    def words(self, own: Ownship, point: Waypoint) -> str:
+        """Where the vehicle is to wait."""
+        away = math.hypot(point.north - own.north, point.east - own.east)
+        far = "" if self.at(own, point) else f", {away / 1e3:.1f} km from here"
+        return f"wait at rally point {self._points.index(point) + 1}{far}"
+
     def hold(self, own: Ownship, point: Waypoint, blocked: Blocked) -> Hold:
         """Fly to a rally point and wait there."""
-        away = math.hypot(point.north - own.north, point.east - own.east)
         return Hold(
-            why=f"{threat_words(blocked.threat)}; no way round is known, "
-            f"wait at rally point {self._points.index(point) + 1}, {away / 1e3:.1f} km from here",
+            why=f"{threat_words(blocked.threat)}; no way round is known, {self.words(own, point)}",
             threat=blocked.threat,
             rung=Rung.ORBIT,
             centre=point,

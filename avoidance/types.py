@@ -119,6 +119,8 @@ class Route:
     """Where the leg now being flown begins."""
     waypoints: tuple[Waypoint, ...]
     """The waypoints still ahead; the first is the one being flown to."""
+    held: bool | None = None
+    """True while the vehicle waits on a circle instead of flying it; None if nobody says."""
 
 
 @dataclass(frozen=True, slots=True)

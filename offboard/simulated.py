@@ -95,9 +95,9 @@ class SimulatedVehicle:
         The same object is given until something changes.
         """
         if self.holding and not self.finished:
-            return Route(self._here(), self._ahead())
+            return Route(self._here(), self._ahead(), held=True)
         if self._route is None:
-            self._route = Route(self._progress.origin, self._ahead())
+            self._route = Route(self._progress.origin, self._ahead(), held=False)
         return self._route
 
     def begin(self, decision: Decision) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from avoidance import Waypoint
 from offboard.edits import EditAction
@@ -197,6 +197,8 @@ class Editor:
 
     def work(self) -> None:
         """Do what is next."""
+        if self._hold_ended():
+            self._aboard.tell("warning", "someone else has ended the hold: another item is flown to")
         if self._run is not None:
             self._move_on()
             action = self._run.work(self._aboard.telemetry)
@@ -225,6 +227,16 @@ class Editor:
             self._look_at_track()
 
     # --- inside -----------------------------------------------------------------------------------------
+
+    def _hold_ended(self) -> bool:
+        """True, once, if another item than the circle that was sent is flown to: not by our doing."""
+        shown, now = self._aboard.telemetry.mission, self.on_board
+        if self._run is not None or shown is None or now is None or now.hold is None:
+            return False
+        if shown.current == self._aboard.rules.first_item + now.composed.current:
+            return False
+        self.on_board = replace(now, hold=None)
+        return True
 
     def _loaded(self) -> RawMission:
         if self._raw is None:
@@ -276,8 +288,8 @@ class Editor:
             self._aboard.tell("info", "the vehicle flies its mission again")
         self._back_at, self._wanted_mission = math.inf, None
         self._watch.edited(self._aboard.time, again=self._watch.retried)
-        if wanted.hold is None:
-            self._check = TrackCheck.begin(self._aboard.ownship(), run.target, self._aboard.performance)
+        circle = 0.0 if wanted.hold is None else wanted.hold.radius
+        self._check = TrackCheck.begin(self._aboard.ownship(), run.target, self._aboard.performance, circle)
 
     def _look_at_track(self) -> None:
         """The ground track after an edit."""
@@ -289,7 +301,8 @@ class Editor:
             self._check = None
             return
         current = self.current()
-        if current < len(shown.mission.entries) and shown.mission.entries[current].waypoint != check.target:
+        on_leg = shown.hold is None and current < len(shown.mission.entries)
+        if on_leg and shown.mission.entries[current].waypoint != check.target:
             self._check = None  # it has been there
             return
         fit = check.look(self._aboard.ownship())

@@ -34,10 +34,12 @@ class TrackCheck:
     """This near to the target nothing can be said [m]."""
 
     @classmethod
-    def begin(cls, own: Ownship, target: Waypoint, performance: Performance) -> TrackCheck:
-        """The check of an edit that has just been confirmed."""
+    def begin(
+        cls, own: Ownship, target: Waypoint, performance: Performance, circle: float = 0.0
+    ) -> TrackCheck:
+        """The check of an edit that has just been confirmed; the target may have a circle about it [m]."""
         turn = abs(_turn(own, target)) * performance.turn_radius / max(performance.airspeed, 1.0)
-        near = 2.0 * performance.turn_radius + performance.acceptance_radius
+        near = 2.0 * (performance.turn_radius + circle) + performance.acceptance_radius
         return cls(target, own.time + performance.roll_time + 1.5 * turn + SETTLE, near)
 
     def look(self, own: Ownship) -> Fit:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-from avoidance import Decision, Hold, Performance, Route, Waypoint
+from avoidance import Decision, Hold, Performance, Replace, Route, Waypoint
 from offboard.edits import route_of
 from offboard.errors import LinkError
 from offboard.link import VehicleState
@@ -135,11 +135,11 @@ class LiveVehicle:
         current = self.editor.current()
         ahead = latest.mission.ahead(current)
         if self.holding:
-            return Route(here, ahead)
+            return Route(here, ahead, held=True)
         key = (current, latest.mission)
         if self._route is None or self._route_key != key:
             before = latest.mission.entries[current - 1].waypoint if current else here
-            self._route = Route(here if self.editor.busy else before, ahead)
+            self._route = Route(here if self.editor.busy else before, ahead, held=False)
             self._route_key = key
         return self._route
 
@@ -160,6 +160,8 @@ class LiveVehicle:
         if isinstance(decision, Hold):
             hold = Orbit.about(decision.centre, decision.radius, decision.direction)
         if (mission.entries, hold) != (latest.mission.entries, latest.hold):
+            if hold is not None or (isinstance(decision, Replace) and decision.waypoint is None):
+                self.aboard.tell("warning", decision.why)
             self.editor.change(mission, current, hold)
 
     # --- MAVSDK's mission interface; these wait for the vehicle -----------------------------------------

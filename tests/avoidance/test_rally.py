@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from avoidance import Decision, Detour, Hold, Keep, RadarScan, Waypoint
+from avoidance import Decision, Detour, Hold, Keep, RadarScan, Replace, Waypoint
 from avoidance.agent import Agent
 from avoidance.known import Known, keep_what_can_be_kept
 from avoidance.ladder import Plan, way_round
@@ -72,7 +73,13 @@ def flight(*rally: Waypoint) -> tuple[Agent, Lost]:
 
 
 def decided(
-    agent: Agent, begin: int, end: int, *obstacles: tuple[float, float, float], east: float = 0.0
+    agent: Agent,
+    begin: int,
+    end: int,
+    *obstacles: tuple[float, float, float],
+    north: float = 0.0,
+    east: float = 0.0,
+    held: bool | None = None,
 ) -> list[Decision]:
     """What is decided in some seconds, on the spot: no `Keep`, the route is the mission's."""
     rows = [(*AHEAD, 1000.0), *obstacles]
@@ -82,7 +89,8 @@ def decided(
         sweep = RadarScan(
             float(second), np.arange(1, len(rows) + 1), table, np.array([radius for *_, radius in rows])
         )
-        found.append(agent.decide(ownship(east=east, time=float(second)), route((20_000.0, 0.0)), sweep))
+        own, ahead = ownship(north, east, time=float(second)), replace(route((20_000.0, 0.0)), held=held)
+        found.append(agent.decide(own, ahead, sweep))
     return [decision for decision in found if not isinstance(decision, Keep)]
 
 
@@ -132,3 +140,22 @@ def test_a_way_out_ends_the_wait() -> None:
     planner.found = True
     way, *_ = decided(agent, 10, 14)
     assert isinstance(way, Detour)
+
+
+def test_the_waypoint_is_given_up_at_the_rally_point_not_on_the_way_to_it() -> None:
+    agent, _ = flight(NEAR)
+    (hold,) = decided(agent, 0, 200)
+    assert isinstance(hold, Hold)
+    assert decided(agent, 200, 240, north=NEAR.north + 60.0) == []
+    given_up, *_ = decided(agent, 240, 300, north=NEAR.north + 60.0)
+    assert isinstance(given_up, Replace)
+    assert given_up.waypoint is None
+
+
+def test_a_hold_that_somebody_else_has_ended_is_decided_again() -> None:
+    """A vehicle that flies its route does not hold: nothing else would keep it off what is ahead."""
+    agent, _ = flight(NEAR)
+    assert len(decided(agent, 0, 20)) == 1
+    assert decided(agent, 20, 30, held=True) == []
+    again = decided(agent, 30, 33, held=False)
+    assert {decision.name for decision in again} == {"hold"}

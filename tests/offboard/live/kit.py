@@ -70,6 +70,10 @@ class Simulation:
         number = self.autopilot.flavour.mode_for(task).custom_mode
         self.send(mavlink.MAVLink_set_mode_message(1, 1, number))
 
+    def set_current(self, seq: int) -> None:
+        """Another ground station chooses the item that is flown to."""
+        self.send(mavlink.MAVLink_mission_set_current_message(1, 1, seq))
+
     def hold_here(self) -> None:
         """Another ground station's button for it: DO_REPOSITION to where the vehicle is."""
         nan = float("nan")
