@@ -35,10 +35,8 @@ def safe_waypoint(points: Floats, centres: Floats, required: Floats) -> Floats:
     if not len(centres) or not len(points):
         return np.zeros(len(points))
     near = within_reach(points, centres, required)
-    if not near.any():
-        return np.zeros(len(points))
-    distance = distances(points, centres[near])
-    return np.asarray(np.maximum((required[near] - distance).max(axis=1), 0.0))
+    shortfall = required[near] - distances(points, centres[near])
+    return np.asarray(shortfall.max(axis=1, initial=0.0))
 
 
 def search_space(points: Floats, members: Floats, limit: float) -> Floats:
@@ -118,8 +116,7 @@ def line_shortfall(
     beyond = ahead - np.maximum(np.minimum(ahead, length[..., None]), 0.0)
     gap = np.sqrt(across * across + beyond * beyond)
     gap -= required
-    gap -= extra[..., None]
-    return np.asarray(np.maximum(-gap.min(axis=(1, 2)), 0.0))
+    return np.asarray(np.maximum((extra - gap.min(axis=2)).max(axis=1), 0.0))
 
 
 def turning_angle(
@@ -183,7 +180,7 @@ def flyable_turn(
     need = turn_radius * np.tan(0.5 * np.minimum(turn_angle(incoming, outgoing), 0.99 * math.pi))
     shortfall = need - np.minimum(first, second)
     if course is not None:
-        ahead = np.broadcast_to(np.array([math.cos(course), math.sin(course)]), incoming.shape)
+        ahead = np.array([math.cos(course), math.sin(course)])
         begin = turn_radius * np.tan(0.5 * np.minimum(turn_angle(ahead, incoming), 0.99 * math.pi))
         shortfall = np.maximum(shortfall, begin - first)
     return np.maximum(shortfall, 0.0)
@@ -192,8 +189,9 @@ def flyable_turn(
 def _units(
     points: Floats, start: tuple[float, float], target: tuple[float, float]
 ) -> tuple[Floats, Floats, Floats, Floats]:
-    incoming = points - np.array(start)
-    outgoing = np.array(target) - points
-    first = np.maximum(np.hypot(incoming[:, 0], incoming[:, 1]), 1e-9)
-    second = np.maximum(np.hypot(outgoing[:, 0], outgoing[:, 1]), 1e-9)
-    return incoming / first[:, None], outgoing / second[:, None], first, second
+    """Directions on to and off each candidate, shape (n, 2), and the lengths of both legs, shape (n,) [m]."""
+    incoming = points.T - np.array(start)[:, None]
+    outgoing = np.array(target)[:, None] - points.T
+    first = np.maximum(np.hypot(incoming[0], incoming[1]), 1e-9)
+    second = np.maximum(np.hypot(outgoing[0], outgoing[1]), 1e-9)
+    return (incoming / first).T, (outgoing / second).T, first, second

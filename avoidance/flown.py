@@ -63,25 +63,26 @@ def flown_lines(
     legs = corners[:, 1:] - corners[:, :-1]
     lengths = np.abs(legs)
     units = legs / np.maximum(lengths, 1e-9)
-    starts, ends, extra = [corners[:, :-1]], [corners[:, 1:]], [np.zeros(lengths.shape)]
-    if corners.shape[1] > 2:
+    count, many = lengths.shape
+    bends = slice(many, 2 * many - 1), slice(2 * many - 1, 3 * many - 2)
+    shape = (count, 3 * many - 2 + (0 if course is None else 2))
+    starts, ends = np.empty(shape, dtype=np.complex128), np.empty(shape, dtype=np.complex128)
+    extra = np.zeros(shape)
+    starts[:, :many], ends[:, :many] = corners[:, :-1], corners[:, 1:]
+    if many > 1:
+        bend, before, after = corners[:, 1:-1], units[:, :-1], units[:, 1:]
         run = performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
-        entry = corners[:, 1:-1] - np.minimum(run, lengths[:, :-1]) * units[:, :-1]
-        begin, room, _ = _turn(entry, units[:, :-1], units[:, 1:], performance)
-        starts.append(begin)
+        product = np.conj(before) * after
+        entry = bend - np.minimum(run, lengths[:, :-1]) * before
+        starts[:, bends[0]], extra[:, bends[0]] = _turn(entry, before, product, performance)
         capture = np.minimum(performance.capture_distance, lengths[:, 1:])
-        ends.append(corners[:, 1:-1] + capture * units[:, 1:])
-        extra.append(room)
-        outside = _overshoot(corners[:, 1:-1], units, capture, performance)
-        starts.append(outside[0])
-        ends.append(corners[:, 1:-1] + capture * units[:, 1:])
-        extra.append(outside[1])
+        ends[:, bends[0]] = ends[:, bends[1]] = bend + capture * after
+        starts[:, bends[1]], extra[:, bends[1]] = _overshoot(bend, before, product, capture, performance)
     if course is not None:
-        first = _first_turn(corners[:, :1], units[:, :1], lengths[:, :1], course, performance)
-        starts.append(first[0])
-        ends.append(first[1])
-        extra.append(first[2])
-    return np.concatenate(starts, axis=1), np.concatenate(ends, axis=1), np.concatenate(extra, axis=1)
+        first = _first_turn(corners[:, 0], units[:, 0], lengths[:, 0], course, performance)
+        starts[:, -2], ends[:, -2] = corners[:, 0], first[0]
+        starts[:, -1], ends[:, -1], extra[:, -1] = first[1:]
+    return starts, ends, extra
 
 
 def late_turn(turn: Floats, performance: Performance) -> Floats:
@@ -99,26 +100,30 @@ def late_turn(turn: Floats, performance: Performance) -> Floats:
     array
         Where the tangents at both ends of the turn meet, beyond the waypoint along the old leg; 0 if before.
     """
+    return _late(turn, performance.turn_radius * np.tan(0.5 * turn), performance)
+
+
+def _late(turn: Floats, lead: Floats, performance: Performance) -> Floats:
+    """As `late_turn`, of turns that begin `lead` before their tangents meet [m]."""
     speed = performance.airspeed + performance.wind_bound
     begin = speed * (SEQUENCING_DELAY + 0.5 * performance.roll_time) - performance.acceptance_radius
-    late = begin + performance.turn_radius * np.tan(0.5 * turn)
-    return np.asarray(np.where(turn > STRAIGHT, np.maximum(late, 0.0), 0.0))
+    return np.asarray(np.where(turn > STRAIGHT, np.maximum(begin + lead, 0.0), 0.0))
 
 
 def _overshoot(
-    corners: Complexes, units: Complexes, capture: Floats, performance: Performance
+    corners: Complexes, before: Complexes, product: Complexes, capture: Floats, performance: Performance
 ) -> tuple[Complexes, Floats]:
     """Where the tangents of the latest turn at each corner meet, and the room about the way back to the leg.
 
     The turn touches the line from there that is parallel to the new leg, and at most so far along it as it
     is wide; then the vehicle is led back to the leg.
     """
-    turn = np.abs(np.angle(np.conj(units[:, :-1]) * units[:, 1:]))
+    turn = np.abs(np.arctan2(product.imag, product.real))
     turn = np.where(turn <= 0.5 * math.pi, turn, 0.0)  # sharper corners have a room of their own
-    late = late_turn(turn, performance)
+    lead = performance.turn_radius * np.tan(0.5 * turn)
+    late = _late(turn, lead, performance)
     aside = late * np.sin(turn)
-    bulge = performance.turn_radius * np.tan(0.5 * turn) * aside / np.maximum(capture, 1.0)
-    return corners + late * units[:, :-1], np.minimum(bulge, aside)
+    return corners + late * before, np.minimum(lead * aside / np.maximum(capture, 1.0), aside)
 
 
 def as_complex(points: Floats) -> Complexes:
@@ -143,42 +148,43 @@ def turn_angle(first: Floats, second: Floats) -> Floats:
 
 
 def _turn(
-    entry: Complexes, first: Complexes, second: Complexes, performance: Performance
-) -> tuple[Complexes, Floats, Complexes]:
-    """Where the segment that encloses a turn begins, the room about it, and the product of the directions.
+    entry: Complexes, ahead: Complexes | complex, product: Complexes, performance: Performance
+) -> tuple[Complexes, Floats | float]:
+    """Where the segment that encloses a turn begins, and the room about it.
+
+    `product` is the new direction's with the conjugate of the old one, `ahead`.
 
     Up to 90 degrees that is the entry point. Beyond, the vehicle rolls in from there and turns to the side
     of the new direction, one turn radius about the centre of its circle; near a reversal it may turn to
     either side, two turn radii about the entry.
     """
-    product = np.conj(first) * second
-    room = np.zeros(product.shape)
     sharp = product.real < 0.0
-    if sharp.any():
-        radius = performance.turn_radius
-        either = product.real < -math.cos(EITHER_SIDE)
-        side = np.where(either, 0.0, np.sign(product.imag))
-        centre = entry + (performance.airspeed * performance.roll_time + 1j * side * radius) * first
-        room = np.where(sharp, np.where(either, 2.0 * radius, radius), 0.0)
-        entry = np.where(sharp, centre, entry)
-    return entry, room, product
+    if not sharp.any():
+        return entry, 0.0
+    radius = performance.turn_radius
+    either = product.real < -math.cos(EITHER_SIDE)
+    side = np.where(either, 0.0, np.sign(product.imag))
+    centre = entry + (performance.airspeed * performance.roll_time + 1j * side * radius) * ahead
+    room = np.where(sharp, np.where(either, 2.0 * radius, radius), 0.0)
+    return np.where(sharp, centre, entry), room
 
 
 def _first_turn(
     start: Complexes, unit: Complexes, length: Floats, course: float, performance: Performance
-) -> tuple[Complexes, Complexes, Floats]:
-    """The turn on to the first leg from the present course: two segments for each polyline, (n, 2)."""
-    ahead = np.full_like(unit, complex(math.cos(course), math.sin(course)))
+) -> tuple[Complexes, Complexes, Complexes, Floats | float]:
+    """The turn on to the first leg from the present course, all of shape (n,).
+
+    It begins so far ahead of the start as the first result is; then the segment of the way on to the leg,
+    and the room about that.
+    """
+    ahead = complex(math.cos(course), math.sin(course))
     delay = max(SEQUENCING_DELAY, performance.edit_time) * performance.airspeed
-    begin, room, product = _turn(start + delay * ahead, ahead, unit, performance)
+    product = ahead.conjugate() * unit
+    begin, room = _turn(start + delay * ahead, ahead, product, performance)
     sharp = product.real < 0.0
-    angle = np.abs(np.angle(product))
+    angle = np.abs(np.arctan2(product.imag, product.real))
     reach = performance.turn_radius * np.tan(0.5 * np.where(sharp, 0.0, angle))
     reach += delay + performance.airspeed * performance.roll_time
     turn = start + np.where(angle < STRAIGHT, 0.0, reach) * ahead
     joins = np.where(sharp, start, turn) + np.minimum(performance.capture_distance, length) * unit
-    return (
-        np.concatenate([start, np.where(sharp, begin, turn)], axis=1),
-        np.concatenate([turn, joins], axis=1),
-        np.concatenate([np.zeros_like(room), room], axis=1),
-    )
+    return turn, np.where(sharp, begin, turn), joins, room

@@ -81,7 +81,7 @@ def point_distances(centres: Floats, point: Point) -> Floats:
     return np.asarray(np.hypot(centres[:, 0] - float(point[0]), centres[:, 1] - float(point[1])))
 
 
-def within_reach(points: Floats, centres: Floats, reach: Floats | float) -> Bools:
+def within_reach(points: Floats, centres: Floats, reach: Floats | float) -> Bools | slice:
     """Which centres can lie within `reach` of any of the points, by the box about them.
 
     Parameters
@@ -95,12 +95,12 @@ def within_reach(points: Floats, centres: Floats, reach: Floats | float) -> Bool
 
     Returns
     -------
-    Bools
-        False only where no point is that near, shape (n,); True for all where sorting them out would cost
-        more than it saves.
+    Bools or slice
+        False only where no point is that near, shape (n,); all, where sorting them out would cost more than
+        it saves.
     """
     if len(centres) <= FEW:
-        return np.ones(len(centres), dtype=bool)
+        return slice(None)
     (low_north, low_east), (high_north, high_east) = points.min(axis=0), points.max(axis=0)
     north, east = centres[:, 0], centres[:, 1]
     return np.asarray(

@@ -129,7 +129,10 @@ class WaypointProblem:
     def rank(self, points: Floats) -> Floats:
         """One number per candidate of shape (n, 2) by which every planner orders them, smaller is better."""
         violation = self.violation(points)
-        return np.where(violation > 0.0, INFEASIBLE + violation, self.cost(points))
+        broken = violation > 0.0
+        if broken.all():
+            return INFEASIBLE + violation
+        return np.where(broken, INFEASIBLE + violation, self.cost(points))
 
     def rank_placed(self, points: Floats, cost: Floats) -> Floats:
         """As `rank`, of points that are known to meet g1 and g2, at a known cost of shape (n,)."""
