@@ -108,15 +108,21 @@ def line_shortfall(
     starts: Complexes, ends: Complexes, extra: Floats, centres: Complexes, required: Floats
 ) -> Floats:
     """As `feasible_segments`, of ends of shape (n, m) and centres of shape (d,) as complex numbers [m]."""
-    along = ends - starts
+    begin = starts.reshape(-1)  # obstacles first, lines last: the least over obstacles is a fast one then
+    along = ends.reshape(-1) - begin
     length = np.abs(along)
-    unit = np.where(length > 0.0, along, 1.0) / np.where(length > 0.0, length, 1.0)
-    seen = np.conj(unit)[..., None] * (centres - starts[..., None])
-    ahead, across = seen.real, seen.imag
-    beyond = ahead - np.maximum(np.minimum(ahead, length[..., None]), 0.0)
-    gap = np.sqrt(across * across + beyond * beyond)
-    gap -= required
-    return np.asarray(np.maximum((extra - gap.min(axis=2)).max(axis=1), 0.0))
+    unit = along / np.maximum(length, 1e-300)
+    unit[length == 0.0] = 1.0
+    seen = np.conj(unit) * (centres[:, None] - begin)
+    beyond = np.minimum(seen.real, length)
+    np.maximum(beyond, 0.0, out=beyond)
+    np.subtract(seen.real, beyond, out=beyond)
+    gap = np.square(seen.imag)
+    gap += np.square(beyond, out=beyond)
+    np.sqrt(gap, out=gap)
+    gap -= required[:, None]
+    nearest = gap.min(axis=0).reshape(extra.shape)
+    return np.asarray((extra - nearest).max(axis=1, initial=0.0))
 
 
 def turning_angle(

@@ -51,13 +51,12 @@ class Curves:
         """Those of the obstacles with the indices `near`, shape (d,)."""
         centres, keep = as_complex(problem.centres[near]), problem.keep[near]
         rims = (keep if "g1" in problem.relaxed else problem.keep_waypoint[near]) + OUTSIDE
-        start, target = complex(*problem.start), complex(*problem.target)
-        padded = keep + CORNER_PADS[:, None]
-        rays = []
-        for point in (start, target):
-            directions = _tangents(point, centres, padded)
-            rays.append(directions[:, _reaching(problem, point, centres, keep + OUTSIDE, directions[0])])
-        return cls(start, target, centres, rims, *rays)
+        points = np.array([complex(*problem.start), complex(*problem.target)])
+        offset = centres - points[:, None]
+        directions = _tangents(offset, keep + CORNER_PADS[:, None, None])
+        reaching = _reaching(problem, points, offset, keep + OUTSIDE, directions[0])
+        rays = [directions[:, k, reaching[k]] for k in range(len(points))]
+        return cls(complex(points[0]), complex(points[1]), centres, rims, *rays)
 
     def corners(self) -> tuple[Complexes, ...]:
         """Where rays from the start meet rays from the target."""
@@ -107,12 +106,12 @@ class Curves:
         return np.asarray(found.view(np.float64).reshape(-1, 2))
 
 
-def _tangents(point: complex, centres: Complexes, radii: Floats) -> Complexes:
-    """Directions of the left, then of the right tangent from a point to each circle.
+def _tangents(offset: Complexes, radii: Floats) -> Complexes:
+    """Directions of the left, then of the right tangents from points to circles.
 
-    Of radii of shape (..., d), shape (..., 2d). Towards the centre, turned by 90 degrees, from inside.
+    Of centres as seen from each point, shape (k, d), and radii of shape (p, 1, d): shape (p, k, 2d). Towards
+    the centre, turned by 90 degrees, from inside.
     """
-    offset = centres - point
     distance = np.maximum(np.abs(offset), 1e-9)
     sine = np.minimum(radii / distance, 1.0)
     opening = np.sqrt(1.0 - sine * sine) + 1.0j * sine
@@ -121,15 +120,15 @@ def _tangents(point: complex, centres: Complexes, radii: Floats) -> Complexes:
 
 
 def _reaching(
-    problem: WaypointProblem, point: complex, centres: Complexes, radii: Floats, directions: Complexes
+    problem: WaypointProblem, points: Complexes, offset: Complexes, radii: Floats, directions: Complexes
 ) -> Bools:
-    """Which of the tangents from a point nothing blocks before they touch their circle, shape (2d,)."""
-    square = np.tile(np.abs(centres - point) ** 2 - radii * radii, 2)
-    touch = point + np.sqrt(np.maximum(square, 0.0)) * directions
-    begin = np.full(len(touch), point)
+    """Which of the tangents from k points nothing blocks before they touch their circle, shape (k, 2d)."""
+    square = np.tile(np.abs(offset) ** 2 - radii * radii, 2)
+    touch = points[:, None] + np.sqrt(np.maximum(square, 0.0)) * directions
+    begin = np.repeat(points, touch.shape[1])
     pairs = (begin.view(np.float64).reshape(-1, 2), touch.view(np.float64).reshape(-1, 2))
     gap = segments_clearance(*pairs, problem.centres)
-    return np.asarray((gap >= problem.keep - OUTSIDE).all(axis=1) & (square > 0.0))
+    return np.asarray((gap >= problem.keep - OUTSIDE).all(axis=1).reshape(square.shape) & (square > 0.0))
 
 
 def _pierce(
