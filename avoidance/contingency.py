@@ -125,13 +125,15 @@ def first_trap(
     inserted = len(points) - 1 - len(route.waypoints)
     longest = longest_stretch(performance, parameters.pop_up_room)
     corners = _corner_room(points, own.course, performance)
-    lengths = np.hypot(*np.diff(points, axis=0).T)
+    steps = points[1:] - points[:-1]
+    lengths = np.hypot(steps[:, 0], steps[:, 1])
     reached = np.concatenate([[0.0], np.cumsum(lengths)])
-    bands = {leg: band for band, legs in altitude_bands(own, route).items() for leg in legs}
+    cuts = [(known.circles(*band), legs) for band, legs in altitude_bands(own, route).items()]
+    cut_on = {leg: circles for circles, legs in cuts for leg in legs}
     run, last = 0.0, -math.inf
     for k in range(len(points) - 1):
         leg = max(k - inserted, 0)
-        circles = known.circles(*bands[leg])
+        circles = cut_on[leg]
         at, rows = _narrow(points[k : k + 2], corners[k], circles, known.walls, performance)
         for s, walls in zip((at + reached[k]).tolist(), rows.tolist(), strict=True):
             run = run + (s - last) if s - last < 2.0 * SPACING else 0.0
@@ -165,9 +167,10 @@ def _lead(performance: Performance) -> float:
 
 
 def _centres(points: Floats, courses: Floats, performance: Performance, radii: float) -> Floats:
-    """Centres of the orbits to both sides that begin at some points, shape (n, 2, 2) [m]."""
-    ahead = np.stack([np.cos(courses), np.sin(courses)], axis=1)
-    right = np.stack([-ahead[:, 1], ahead[:, 0]], axis=1)
+    """Centres of the orbits to both sides that begin at n points, on n courses or on one, (n, 2, 2) [m]."""
+    ahead, right = np.empty((len(courses), 2)), np.empty((len(courses), 2))
+    ahead[:, 0], ahead[:, 1] = np.cos(courses), np.sin(courses)
+    right[:, 0], right[:, 1] = -ahead[:, 1], ahead[:, 0]
     entry = points + _lead(performance) * ahead
     offset = radii * performance.turn_radius * SIDES
     return np.asarray(entry[:, None] + offset[None, :, None] * right[:, None])
@@ -187,16 +190,19 @@ def _corner_room(points: Floats, course: float, performance: Performance) -> Flo
     In a corner the vehicle is off the legs and flies neither's direction. Up to 90 degrees it stays within
     the triangle of entry, waypoint and exit, or overshoots the new leg; beyond, within three turn radii.
     """
-    steps = np.diff(points, axis=0)
-    courses = np.concatenate([[course], np.arctan2(steps[:, 1], steps[:, 0])])
-    turn = np.abs(np.mod(np.diff(courses) + math.pi, math.tau) - math.pi)
+    steps = points[1:] - points[:-1]
+    courses = np.empty(len(points))
+    courses[0], courses[1:] = course, np.arctan2(steps[:, 1], steps[:, 0])
+    turn = np.abs(np.mod(courses[1:] - courses[:-1] + math.pi, math.tau) - math.pi)
     run = performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
     late = late_turn(np.minimum(turn, 0.5 * math.pi), performance) * np.sin(turn)
     gentle = np.maximum(run * np.sin(0.5 * turn), late)
     off = np.where(turn <= 0.5 * math.pi, gentle, 3.0 * performance.turn_radius)
     swung = 2.0 * np.sin(0.5 * turn) * math.hypot(TIGHT * performance.turn_radius, _lead(performance))
-    room = np.concatenate([off + swung, [0.0]])
-    return np.stack([room[:-1], room[1:]], axis=1)
+    room = np.zeros((len(turn), 2))
+    room[:, 0] = off + swung
+    room[:-1, 1] = room[1:, 0]
+    return room
 
 
 def _narrow(
@@ -222,21 +228,18 @@ def _narrow(
     unit = (end - begin) / length
     radii = circles.hard[near] + widest
     at = _places(unit, begin, length, circles.centres[near], radii, (walls if fenced else Walls(), widest))
-    courses = np.full(len(at), math.atan2(unit[1], unit[0]))
+    course = np.array([math.atan2(unit[1], unit[0])])
     run = performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
     extra = np.maximum(
         np.where(at < performance.capture_distance, room[0], 0.0), np.where(length - at < run, room[1], 0.0)
     )
-    centres = _centres(begin + at[:, None] * unit, courses, performance, TIGHT).reshape(-1, 2)
-    margins = np.concatenate(
-        [
-            distances(centres, circles.centres[near]) - circles.hard[near],
-            walls.clearance(centres, centres)[:, None],
-        ],
-        axis=1,
-    ).reshape(len(at), 2, -1)
+    centres = _centres(begin + at[:, None] * unit, course, performance, TIGHT).reshape(-1, 2)
+    margins = np.empty((len(centres), len(near) + 1))
+    margins[:, :-1] = distances(centres, circles.centres[near]) - circles.hard[near]
+    margins[:, -1] = walls.clearance(centres, centres)
+    margins = margins.reshape(len(at), 2, -1)
     free: Bools = (margins.min(axis=2) >= (reach + extra)[:, None]).any(axis=1)
-    return at[~free], np.append(near, -1)[margins.argmin(axis=2)][~free]
+    return at[~free], np.append(near, -1)[margins[~free].argmin(axis=2)]
 
 
 def _places(

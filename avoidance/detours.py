@@ -58,7 +58,7 @@ def search_problem(
     heights = (waypoints[begin - 1].altitude if begin else own.altitude, waypoints[end].altitude)
     circles = known.circles(min(heights), max(heights))
     labels = clusters(circles.centres, circles.keep, parameters.link_distance, parameters.all_obstacles)
-    nearest = np.flatnonzero(np.isin(circles.rows, blocked.blockers[:1]))
+    nearest = np.flatnonzero(circles.rows[:, None] == blocked.blockers[:1])
     avoided = np.flatnonzero(labels == labels[nearest[0]]) if len(nearest) else nearest
     flown = sum(math.dist(a, b) for a, b in pairwise(places[: begin + 1]))
     problem = WaypointProblem(

@@ -123,16 +123,18 @@ def predict(tracks: Tracks, rows: Ints, time: float) -> None:
     state[:, :2] += step[:, None] * state[:, 2:]
     covariance[:, :2] += long * covariance[:, 2:]
     covariance[:, :, :2] += long * covariance[:, :, 2:]
+    square, cube = step**2, step**3
+    both, place, speed = WANDER * square / 2.0, WANDER * cube / 3.0, WANDER * step
     for axis in (0, 1):
-        covariance[:, axis, axis] += WANDER * step**3 / 3.0
-        covariance[:, axis, axis + 2] += WANDER * step**2 / 2.0
-        covariance[:, axis + 2, axis] += WANDER * step**2 / 2.0
-        covariance[:, axis + 2, axis + 2] += WANDER * step
+        covariance[:, axis, axis] += place
+        covariance[:, axis, axis + 2] += both
+        covariance[:, axis + 2, axis] += both
+        covariance[:, axis + 2, axis + 2] += speed
     tracks.state[rows], tracks.covariance[rows] = state, covariance
     vertical, up = tracks.vertical[rows], tracks.vertical_covariance[rows]
     vertical[:, 0] += step * vertical[:, 1]
-    up[:, 0] += 2.0 * step * up[:, 2] + step**2 * up[:, 1] + WANDER_UP * step**3 / 3.0
-    up[:, 2] += step * up[:, 1] + WANDER_UP * step**2 / 2.0
+    up[:, 0] += 2.0 * step * up[:, 2] + square * up[:, 1] + WANDER_UP * cube / 3.0
+    up[:, 2] += step * up[:, 1] + WANDER_UP * square / 2.0
     up[:, 1] += WANDER_UP * step
     tracks.vertical[rows], tracks.vertical_covariance[rows] = vertical, up
     tracks.time[rows] = time
@@ -171,11 +173,13 @@ def _correct_height(tracks: Tracks, rows: Ints, altitudes: Floats) -> None:
     total = up[:, 0] + ALTITUDE_SIGMA**2
     first, second = up[:, 0] / total, up[:, 2] / total
     innovation = altitudes - tracks.vertical[rows, 0]
-    tracks.vertical[rows] += np.stack([first * innovation, second * innovation], axis=1)
+    tracks.vertical[rows, 0] += first * innovation
+    tracks.vertical[rows, 1] += second * innovation
     left = 1.0 - first
-    tracks.vertical_covariance[rows] = np.stack(
-        [left * up[:, 0], up[:, 1] - second * up[:, 2], left * up[:, 2]], axis=1
-    )
+    up[:, 1] -= second * up[:, 2]
+    up[:, 0] *= left
+    up[:, 2] *= left
+    tracks.vertical_covariance[rows] = up
 
 
 def speed_sigma(tracks: Tracks) -> Floats:

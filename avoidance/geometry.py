@@ -73,7 +73,9 @@ def distances(points: Floats, centres: Floats) -> Floats:
     """
     north = points[:, 0, None] - centres[:, 0]
     east = points[:, 1, None] - centres[:, 1]
-    return np.asarray(np.sqrt(north * north + east * east))  # hypot is several times slower
+    square = np.square(north, out=north)
+    square += np.square(east, out=east)
+    return np.asarray(np.sqrt(square, out=square))  # hypot is several times slower
 
 
 def point_distances(centres: Floats, point: Point) -> Floats:
@@ -132,17 +134,20 @@ def segments_clearance(starts: Floats, ends: Floats, centres: Floats) -> Floats:
     """
     along_north, along_east = ends[:, 0] - starts[:, 0], ends[:, 1] - starts[:, 1]
     length = np.hypot(along_north, along_east)
-    scale = np.where(length > 0.0, length, 1.0)
+    point = length == 0.0
+    scale = np.where(point, 1.0, length)
     unit_north, unit_east = (along_north / scale)[:, None], (along_east / scale)[:, None]
     north = centres[:, 0] - starts[:, 0, None]
     east = centres[:, 1] - starts[:, 1, None]
     along = north * unit_north + east * unit_east
-    across = east * unit_north - north * unit_east
-    beyond = np.maximum(np.maximum(-along, along - length[:, None]), 0.0)
-    point = length == 0.0
+    square = east * unit_north - north * unit_east
+    beyond = np.maximum(-along, along - length[:, None])
+    np.maximum(beyond, 0.0, out=beyond)
     if point.any():
         beyond[point] = np.hypot(north[point], east[point])
-    return np.asarray(np.sqrt(across * across + beyond * beyond))  # hypot is several times slower
+    np.square(square, out=square)
+    square += np.square(beyond, out=beyond)
+    return np.asarray(np.sqrt(square, out=square))  # hypot is several times slower
 
 
 def segment_sphere_interval(

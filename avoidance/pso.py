@@ -43,7 +43,8 @@ class Pso(AskTell):
         self._own_points[better] = self._points[better]
         self._own_costs[better] = costs[better]
         self._velocity = self._next_velocity(costs, change)
-        np.clip(self._velocity, -settings.largest_step, settings.largest_step, out=self._velocity)
+        np.minimum(self._velocity, settings.largest_step, out=self._velocity)
+        np.maximum(self._velocity, -settings.largest_step, out=self._velocity)
         return self._points + self._velocity  # Eq. 29
 
     def _inertia(self) -> float:

@@ -45,9 +45,9 @@ def refined(problem: WaypointProblem, point: Floats, rank: float, rounds: int) -
     the axes of the map would lead into the circle or away from it. All lengths are tried at once.
     """
     start, target = np.array(problem.start), np.array(problem.target)
-    evaluated = 0
+    legs, evaluated = np.empty((2, 2)), 0
     for _ in range(rounds):
-        legs = np.stack([_unit(point - start), _unit(target - point)])
+        legs[0], legs[1] = _unit(point - start), _unit(target - point)
         candidates = point + (STEPS[:, None, None] * (DIRECTIONS @ legs)).reshape(-1, 2)
         cost = problem.cost(candidates)
         candidates, cost = candidates[cost < rank], cost[cost < rank]

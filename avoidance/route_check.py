@@ -93,7 +93,7 @@ def first_blocked_leg(
     first: Blocked | None = None
     for band, owners in altitude_bands(own, route).items():
         circles = known.circles(*band)
-        mine = np.flatnonzero(np.isin(legs, owners))
+        mine = np.flatnonzero((legs[:, None] == owners).any(axis=1))
         distance = segments_clearance(starts[0, mine], ends[0, mine], circles.centres)
         cut = distance < (circles.keep - slack * circles.slack)[None] + extra[0, mine, None]
         if not cut.any():

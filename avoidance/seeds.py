@@ -111,10 +111,11 @@ def rule_seeds(problem: WaypointProblem, count: int) -> tuple[Floats, Floats, in
         seeds = _fan(problem)[:count]
         return seeds, np.full(len(seeds), np.nan), 0
     candidates = _candidates(problem)
-    useful = path_length(candidates, problem.start, problem.target) < problem.longest
-    if not useful.any():
+    if math.isfinite(problem.longest):
+        candidates = candidates[path_length(candidates, problem.start, problem.target) < problem.longest]
+    if not len(candidates):
         return np.array([problem.start]), np.array([np.nan]), 0
-    seeds, ranks, tested = _best_first(problem, candidates[useful], count)
+    seeds, ranks, tested = _best_first(problem, candidates, count)
     rounds = ROUNDS
     if ranks[0] >= INFEASIBLE and math.isinf(problem.longest):
         seeds, ranks, more = _best_first(problem, np.concatenate([seeds, _fan(problem)]), count)

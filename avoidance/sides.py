@@ -60,7 +60,7 @@ class Sides:
         here = (own.north, own.east)
         if len(scan.ids):
             away = np.hypot(scan.positions[:, 0] - here[0], scan.positions[:, 1] - here[1])
-            self._reach = max(self._reach, float(np.nanmax(away, initial=0.0)))
+            self._reach = max(self._reach, float(np.fmax.reduce(away, initial=0.0)))
         if not self._looked or math.dist(self._looked[-1], here) > FOOTSTEP:
             self._looked.append(here)
 

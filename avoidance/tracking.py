@@ -164,9 +164,11 @@ class Tracker:
         score = np.where(share <= 1.0, share - HINT * hinted, np.inf)
         score[:, taken] = np.inf
         own_track = hinted & (share < SURE) & np.isfinite(score)
-        lonely = (own_track.sum(axis=1) == 1) & (own_track[:, own_track.argmax(axis=1)].sum(axis=0) == 1)
-        for contact in np.flatnonzero(lonely).tolist():
-            rows[contact] = int(own_track[contact].argmax())
+        likely = own_track.argmax(axis=1)
+        lonely = (own_track.sum(axis=1) == 1) & (own_track.sum(axis=0)[likely] == 1)
+        rows[lonely] = likely[lonely]
+        if lonely.all():
+            return rows
         score[lonely, :] = np.inf
         score[:, rows[lonely]] = np.inf
         while True:
