@@ -89,15 +89,16 @@ class Known:
         fence = self.ids == FENCE
         height = np.where(fence, 0.0, np.maximum(above, 0.0))
         rows = np.flatnonzero((height < self.radii) | fence)
-        cut = np.sqrt(self.radii[rows] ** 2 - height[rows] ** 2)
-        keep = cut + self.margin[rows]
+        chosen = slice(None) if len(rows) == len(self.ids) else rows
+        cut = np.sqrt(self.radii[chosen] ** 2 - height[chosen] ** 2)
+        keep = cut + self.margin[chosen]
         return Circles(
             rows=rows,
-            centres=self.centres[rows],
-            keep=np.minimum(keep, self.most[rows]),
-            hard=cut + self.doubt[rows],
-            keep_waypoint=np.maximum(cut + self.tolerance[rows], keep),
-            slack=self.slack[rows],
+            centres=self.centres[chosen],
+            keep=np.minimum(keep, self.most[chosen]),
+            hard=cut + self.doubt[chosen],
+            keep_waypoint=np.maximum(cut + self.tolerance[chosen], keep),
+            slack=self.slack[chosen],
         )
 
 

@@ -44,6 +44,9 @@ class Optimiser(Protocol):
 HOPELESS = 3
 """Rule seeds find a feasible point if there is one; a swarm that has none after so many iterations stops."""
 
+OUT_OF_PLACE = 2.0 * INFEASIBLE
+"""Rank of seeds that break a constraint by their own place or legs, where no swarm sets out from them."""
+
 OPTIMISERS: dict[str, type[Optimiser]] = {
     "pso": Pso,
     "gcpso": Gcpso,
@@ -88,9 +91,14 @@ def search_waypoint(problem: WaypointProblem, rng: np.random.Generator) -> Searc
     first_feasible: int | None = None
     while not optimiser.finished and (useful or not iterations):
         points = optimiser.ask()
-        known = iterations == 0 and not np.isnan(ranks).any() and np.array_equal(points, seeds)
-        optimiser.tell(ranks if known else problem.rank(points))
-        evaluations += 0 if known else len(points)
+        known = iterations == 0 and np.array_equal(points, seeds)
+        if known and not useful:
+            ranks = np.where(np.isnan(ranks), OUT_OF_PLACE, ranks)  # not of interest by how much they are
+        if known and not np.isnan(ranks).any():
+            optimiser.tell(ranks)
+        else:
+            optimiser.tell(problem.rank(points))
+            evaluations += len(points)
         iterations += 1
         if first_feasible is None:
             if optimiser.best_cost < INFEASIBLE:
