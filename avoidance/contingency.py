@@ -237,9 +237,9 @@ def _narrow(
     margins = np.empty((len(centres), len(near) + 1))
     margins[:, :-1] = distances(centres, circles.centres[near]) - circles.hard[near]
     margins[:, -1] = walls.clearance(centres, centres)
-    margins = margins.reshape(len(at), 2, -1)
-    free: Bools = (margins.min(axis=2) >= (reach + extra)[:, None]).any(axis=1)
-    return at[~free], np.append(near, -1)[margins[~free].argmin(axis=2)]
+    sides = margins.reshape(len(at), 2, -1)
+    free: Bools = (sides.min(axis=2) >= (reach + extra)[:, None]).any(axis=1)
+    return at[~free], np.append(near, -1)[sides[~free].argmin(axis=2)]
 
 
 def _places(
