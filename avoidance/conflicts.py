@@ -94,7 +94,8 @@ def _approaches(
 ) -> tuple[Floats, Floats]:
     """As `leg_approaches`, of the route as far as intruders are extrapolated, shape (1, k - 1, q)."""
     points = _within_horizon(own, route, performance.airspeed)
-    speeds = ground_speeds(np.diff(points, axis=1), performance.airspeed, wind_estimate(own, performance))
+    legs = points[:, 1:] - points[:, :-1]
+    speeds = ground_speeds(legs, performance.airspeed, wind_estimate(own, performance))
     return leg_approaches(points, speeds, intruders)
 
 

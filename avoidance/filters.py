@@ -182,14 +182,14 @@ def _correct_height(tracks: Tracks, rows: Ints, altitudes: Floats) -> None:
     tracks.vertical_covariance[rows] = up
 
 
-def speed_sigma(tracks: Tracks) -> Floats:
-    """Standard deviation of the speed of each track, shape (n,) [m/s]."""
-    return np.sqrt(np.maximum(tracks.covariance[:, 2, 2], tracks.covariance[:, 3, 3]))
+def speed_sigma(tracks: Tracks, rows: Ints | slice = slice(None)) -> Floats:
+    """Standard deviation of the speed of each track, or of some, shape (n,) [m/s]."""
+    return np.sqrt(np.maximum(tracks.covariance[rows, 2, 2], tracks.covariance[rows, 3, 3]))
 
 
-def position_variance(tracks: Tracks) -> Floats:
-    """Variance of the position of each track, the larger of both axes, shape (n,) [m²]."""
-    return np.maximum(tracks.covariance[:, 0, 0], tracks.covariance[:, 1, 1])
+def position_variance(tracks: Tracks, rows: Ints | slice = slice(None)) -> Floats:
+    """Variance of the position of each track, or of some, the larger of both axes, shape (n,) [m²]."""
+    return np.maximum(tracks.covariance[rows, 0, 0], tracks.covariance[rows, 1, 1])
 
 
 def _inverse(matrices: Floats) -> Floats:

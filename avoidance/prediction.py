@@ -122,8 +122,8 @@ def leg_approaches(
     lengths = np.sqrt(legs[..., 0] ** 2 + legs[..., 1] ** 2)
     lasting = lengths / speeds
     begin = np.zeros_like(lasting)
-    np.cumsum(lasting[:, :-1], axis=1, out=begin[:, 1:])
-    until = np.clip(horizon - begin, 0.0, lasting)[..., None]
+    lasting[:, :-1].cumsum(axis=1, out=begin[:, 1:])
+    until = np.minimum(np.maximum(horizon - begin, 0.0), lasting)[..., None]
     own = legs / np.maximum(lasting, 1e-9)[..., None]
     since = begin[..., None]
     north = points[:, :-1, 0, None] - intruders.positions[:, 0] - intruders.velocities[:, 0] * since
@@ -152,7 +152,7 @@ def _nearest(
     """Least squared distance of a uniform motion from the origin between two times, and when."""
     speed = rates[0] ** 2 + rates[1] ** 2 + climb**2
     along = north * rates[0] + east * rates[1] + up * climb
-    moment = np.clip(-along / np.maximum(speed, 1e-12), first, last)
+    moment = np.minimum(np.maximum(-along / np.maximum(speed, 1e-12), first), last)
     square = (north + rates[0] * moment) ** 2 + (east + rates[1] * moment) ** 2 + (up + climb * moment) ** 2
     return square, moment
 

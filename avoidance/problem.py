@@ -229,7 +229,7 @@ class WaypointProblem:
 
     def speeds(self, route: Floats) -> Floats | float:
         """Ground speed on the legs of routes of shape (n, k, 2), shape (n, k - 1) [m/s]."""
-        return ground_speeds(np.diff(route, axis=1), self.performance.airspeed, self.wind)
+        return ground_speeds(route[:, 1:] - route[:, :-1], self.performance.airspeed, self.wind)
 
 
 def straight_cost(problem: WaypointProblem) -> float:

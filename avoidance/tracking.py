@@ -151,33 +151,40 @@ class Tracker:
         rows = np.full(len(contacts), -1, dtype=np.int64)
         if not len(tracks):
             return rows
-        resting = ~tracks.moving & (scan.time - tracks.seen > RESTING_TIME)
-        expected = np.where(resting[:, None], tracks.mean[:, :2], tracks.state[:, :2])
-        variance = np.where(resting, 1.0 / tracks.weight, filters.position_variance(tracks))
-        places = scan.positions[contacts]
-        north = places[:, 0, None] - expected[:, 0]
-        east = places[:, 1, None] - expected[:, 1]
+        free = np.ones(len(tracks), dtype=np.bool_)
+        free[taken] = False
+        places, ids = scan.positions[contacts], scan.ids[contacts, None]
         measured = noise[:, 0, 0] + noise[:, 1, 1]
-        gate = np.maximum(GATE * np.sqrt(variance + measured[:, None]), GATE_FLOOR)
-        share = np.sqrt(north**2 + east**2) / gate
-        hinted = scan.ids[contacts, None] == tracks.ids
-        score = np.where(share <= 1.0, share - HINT * hinted, np.inf)
-        score[:, taken] = np.inf
-        own_track = hinted & (share < SURE) & np.isfinite(score)
-        likely = own_track.argmax(axis=1)
-        lonely = (own_track.sum(axis=1) == 1) & (own_track.sum(axis=0)[likely] == 1)
-        rows[lonely] = likely[lonely]
-        if lonely.all():
+        contact, track = np.nonzero(ids == tracks.ids)
+        sure = free[track] & (
+            self._share_of_gate(places[contact], measured[contact], track, scan.time) < SURE
+        )
+        contact, track = contact[sure], track[sure]
+        lonely = (np.bincount(contact)[contact] == 1) & (np.bincount(track)[track] == 1)
+        rows[contact[lonely]] = track[lonely]
+        rest = np.flatnonzero(rows < 0)
+        if not len(rest):
             return rows
-        score[lonely, :] = np.inf
-        score[:, rows[lonely]] = np.inf
+        free[rows[rows >= 0]] = False
+        share = self._share_of_gate(places[rest, None], measured[rest, None], slice(None), scan.time)
+        score = np.where((share <= 1.0) & free, share - HINT * (ids[rest] == tracks.ids), np.inf)
         while True:
-            contact, track = divmod(int(np.argmin(score)), score.shape[1])
-            if not np.isfinite(score[contact, track]):
+            place, nearest = divmod(int(np.argmin(score)), score.shape[1])
+            if not np.isfinite(score[place, nearest]):
                 return rows
-            rows[contact] = track
-            score[contact, :] = np.inf
-            score[:, track] = np.inf
+            rows[rest[place]] = nearest
+            score[place, :] = np.inf
+            score[:, nearest] = np.inf
+
+    def _share_of_gate(self, places: Floats, measured: Floats, rows: Ints | slice, time: float) -> Floats:
+        """How far some places, of variance `measured`, are from some tracks, in parts of their gates."""
+        tracks = self._tracks
+        resting = ~tracks.moving[rows] & (time - tracks.seen[rows] > RESTING_TIME)
+        expected = np.where(resting[:, None], tracks.mean[rows, :2], tracks.state[rows, :2])
+        variance = np.where(resting, 1.0 / tracks.weight[rows], filters.position_variance(tracks, rows))
+        north, east = places[..., 0] - expected[:, 0], places[..., 1] - expected[:, 1]
+        gate = np.maximum(GATE * np.sqrt(variance + measured), GATE_FLOOR)
+        return np.asarray(np.sqrt(north**2 + east**2) / gate)
 
     def _correct(self, scan: RadarScan, contacts: Ints, rows: Ints, noise: Floats) -> None:
         if not len(contacts):
@@ -197,7 +204,7 @@ class Tracker:
             return
         tracks = self._tracks
         speed = np.hypot(tracks.state[rows, 2], tracks.state[rows, 3])
-        sigma = filters.speed_sigma(tracks)[rows]
+        sigma = filters.speed_sigma(tracks, rows)
         starts = (speed > np.maximum(MOVING_SPEED, MOVING_SIGMAS * sigma)) & (tracks.hits[rows] >= 2)
         stops = (speed < np.maximum(STILL_SPEED, STILL_SIGMAS * sigma)) & (sigma < MOVING_SPEED)
         before = tracks.moving[rows]
@@ -223,8 +230,8 @@ class Tracker:
         tracks, before, moving = self._tracks, self._picture, self._tracks.moving
         confirmed = tracks.hits >= CONFIRMING_HITS
         self._settled = not moving.any() and bool((tracks.hits >= LASTING_HITS).all())
-        tracked = np.column_stack([tracks.state[:, :2], tracks.vertical[:, 0]])
-        positions = np.where(moving[:, None], tracked, tracks.mean)
+        positions = tracks.mean.copy()
+        positions[moving, :2], positions[moving, 2] = tracks.state[moving, :2], tracks.vertical[moving, 0]
         sigma = np.sqrt(np.where(moving, filters.position_variance(tracks), 1.0 / tracks.weight))
         sigma = np.where(sigma <= 2.0 * FLOOR, 0.0, sigma)
         rate = tracks.vertical[:, 1]
@@ -232,7 +239,7 @@ class Tracker:
             np.abs(rate) > np.maximum(CLIMB_RATE, 4.0 * np.sqrt(tracks.vertical_covariance[:, 1]))
         )
         if before is not None and _same_still(before, tracks.ids, positions, moving, confirmed):
-            positions = np.where(moving[:, None], positions, before.positions)
+            positions[~moving] = before.positions[~moving]
         else:
             self._version += 1
         self._picture = Picture(
@@ -266,5 +273,5 @@ def _same_still(before: Picture, ids: Ints, positions: Floats, moving: Bools, co
         return False
     if not np.array_equal(before.confirmed, confirmed):
         return False
-    shift = np.abs(positions[:, :2] - before.positions[:, :2]).max(axis=1, initial=0.0)
-    return bool((shift[~moving] < 1.0).all())
+    still = ~moving
+    return bool((np.abs(positions[still, :2] - before.positions[still, :2]) < 1.0).all())
