@@ -257,7 +257,7 @@ def _places(
     half = np.sqrt(np.maximum(radii**2 - across**2, 0.0))
     grid = np.arange(0.0, length + SPACING, SPACING)
     grid[-1] = length
-    inside = (np.abs(grid[:, None] - along) <= half + SPACING).any(axis=1)
+    inside = (np.abs(along[:, None] - grid) <= (half + SPACING)[:, None]).any(axis=0)
     if len(walls[0]):
         places = begin + grid[:, None] * unit
         inside |= walls[0].clearance(places, places) < walls[1] + SPACING

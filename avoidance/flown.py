@@ -105,19 +105,25 @@ def late_turn(turn: Floats, performance: Performance) -> Floats:
 
 def _late(turn: Floats, lead: Floats, performance: Performance) -> Floats:
     """As `late_turn`, of turns that begin `lead` before their tangents meet [m]."""
+    return np.asarray(np.where(turn > STRAIGHT, np.maximum(_latest_begin(performance) + lead, 0.0), 0.0))
+
+
+def _latest_begin(performance: Performance) -> float:
+    """How far behind a waypoint a turn begins at the latest, negative before it [m]."""
     speed = performance.airspeed + performance.wind_bound
-    begin = speed * (SEQUENCING_DELAY + 0.5 * performance.roll_time) - performance.acceptance_radius
-    return np.asarray(np.where(turn > STRAIGHT, np.maximum(begin + lead, 0.0), 0.0))
+    return speed * (SEQUENCING_DELAY + 0.5 * performance.roll_time) - performance.acceptance_radius
 
 
 def _overshoot(
     corners: Complexes, before: Complexes, product: Complexes, capture: Floats, performance: Performance
-) -> tuple[Complexes, Floats]:
+) -> tuple[Complexes, Floats | float]:
     """Where the tangents of the latest turn at each corner meet, and the room about the way back to the leg.
 
     The turn touches the line from there that is parallel to the new leg, and at most so far along it as it
     is wide; then the vehicle is led back to the leg.
     """
+    if _latest_begin(performance) + performance.turn_radius <= 0.0:
+        return corners, 0.0  # not even a turn of 90 degrees is late
     turn = np.abs(np.arctan2(product.imag, product.real))
     turn = np.where(turn <= 0.5 * math.pi, turn, 0.0)  # sharper corners have a room of their own
     lead = performance.turn_radius * np.tan(0.5 * turn)
