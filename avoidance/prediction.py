@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
@@ -88,9 +87,7 @@ class Intruders:
         return np.asarray(np.minimum(self.radii + self.margin + SIGMAS * self.doubt(times), self.most))
 
 
-def leg_approaches(
-    points: Floats, speeds: Floats | float, intruders: Intruders, horizon: float = math.inf
-) -> tuple[Floats, Floats]:
+def leg_approaches(points: Floats, speeds: Floats | float, intruders: Intruders) -> tuple[Floats, Floats]:
     """Closest approach of a flight along each polyline to each intruder, leg by leg.
 
     Parameters
@@ -101,13 +98,11 @@ def leg_approaches(
         Own ground speed on each leg [m/s].
     intruders : Intruders
         q of them.
-    horizon : float
-        Look no further ahead than this [s].
 
     Returns
     -------
     separations : array, shape (n, k - 1, q)
-        Least distance in space [m]; infinite beyond the horizon.
+        Least distance in space [m].
     times : array, shape (n, k - 1, q)
         When it is reached, from now [s].
 
@@ -123,9 +118,8 @@ def leg_approaches(
     lasting = lengths / speeds
     begin = np.zeros_like(lasting)
     lasting[:, :-1].cumsum(axis=1, out=begin[:, 1:])
-    until = np.minimum(np.maximum(horizon - begin, 0.0), lasting)[..., None]
     own = legs / np.maximum(lasting, 1e-9)[..., None]
-    since = begin[..., None]
+    since, until = begin[..., None], lasting[..., None]
     north = points[:, :-1, 0, None] - intruders.positions[:, 0] - intruders.velocities[:, 0] * since
     east = points[:, :-1, 1, None] - intruders.positions[:, 1] - intruders.velocities[:, 1] * since
     rates = (own[..., 0, None] - intruders.velocities[:, 0], own[..., 1, None] - intruders.velocities[:, 1])
@@ -136,8 +130,7 @@ def leg_approaches(
         square, moment = _nearest(north, east, gap, rates, 0.0, 0.0, until)
     else:
         square, moment = _climbing(north, east, height, rates, intruders.climbs, (low, high), until)
-    separation = np.where(since <= horizon, np.sqrt(square), np.inf)
-    return separation, since + moment
+    return np.sqrt(square), since + moment
 
 
 def _nearest(
@@ -185,14 +178,12 @@ def _climbing(
     return best, moment
 
 
-def route_separation(
-    points: Floats, speeds: Floats | float, intruders: Intruders, horizon: float = math.inf
-) -> Floats:
+def route_separation(points: Floats, speeds: Floats | float, intruders: Intruders) -> Floats:
     """Least distance between a flight along each polyline and each intruder, shape (n, q) [m].
 
     Arguments as of `leg_approaches`.
     """
-    return np.asarray(leg_approaches(points, speeds, intruders, horizon)[0].min(axis=1))
+    return np.asarray(leg_approaches(points, speeds, intruders)[0].min(axis=1))
 
 
 def separation_shortfall(points: Floats, speeds: Floats | float, intruders: Intruders) -> Floats:

@@ -19,12 +19,6 @@ def test_head_on_meets_in_the_middle() -> None:
     assert separation[0, 0] == pytest.approx(600.0)
 
 
-def test_beyond_the_horizon_nothing_counts() -> None:
-    route = np.array([[[0.0, 0.0], [10_000.0, 0.0]]])
-    oncoming = intruders((9000.0, 0.0, -15.0, 0.0))
-    assert route_separation(route, 15.0, oncoming, horizon=100.0)[0, 0] == pytest.approx(6000.0)
-
-
 numbers = st.floats(-8000.0, 8000.0)
 
 
