@@ -23,7 +23,7 @@ import numpy as np
 
 from avoidance import Detour, Waypoint
 from offboard.link import EditStatus
-from offboard.live.session import connect
+from offboard.live.connecting import connect
 from offboard.live.starting import arm, fly_mission, open_vehicle
 from offboard.live.vehicle import LiveVehicle
 

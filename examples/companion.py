@@ -9,7 +9,7 @@ is flown round. Any mode change by a human ends our commands until the mission m
 import sys
 
 from avoidance.agent import Agent
-from offboard.live.session import connect
+from offboard.live.connecting import connect
 from offboard.live.starting import open_vehicle
 from offboard.live.waiting import WaitingClock
 from offboard.pilot import Pilot, fly

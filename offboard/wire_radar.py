@@ -13,8 +13,9 @@ import numpy as np
 from avoidance import RadarScan
 from offboard.frames import MapFrame
 from offboard.link import VehicleState
+from offboard.live.facts import Attitude, Fix
 from offboard.live.messages import Message
-from offboard.live.telemetry import Attitude, Fix, Telemetry
+from offboard.live.telemetry import Telemetry
 from offboard.own_echo import OwnEcho
 from offboard.sightings import Sighting, Sightings
 

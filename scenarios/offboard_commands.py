@@ -117,7 +117,7 @@ def _connect_and_fly(
     as_json: bool,
 ) -> int:
     """Connect, prepare, fly, judge, write, show; the exit code."""
-    from offboard.live.session import connect  # noqa: PLC0415
+    from offboard.live.connecting import connect  # noqa: PLC0415
     from offboard.live.starting import open_vehicle  # noqa: PLC0415
     from scenarios.live_show import say  # noqa: PLC0415
 

@@ -9,9 +9,10 @@ from dataclasses import dataclass, field, replace
 from avoidance import Ownship, Performance
 from offboard.frames import MapFrame
 from offboard.live.autopilots import Home, Mode, Rules
+from offboard.live.facts import Fix
 from offboard.live.limits import EditTimes
 from offboard.live.messages import Session
-from offboard.live.telemetry import Fix, Telemetry
+from offboard.live.telemetry import Telemetry
 from offboard.live.vehicle_clock import VehicleClock
 
 RATES = {33: 10.0, 30: 5.0, 74: 5.0, 87: 5.0, 42: 2.0, 245: 1.0, 2: 1.0, 242: 0.5, 147: 0.2}

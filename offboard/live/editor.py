@@ -12,21 +12,16 @@ from offboard.link import EditStatus
 from offboard.live.aboard import Aboard
 from offboard.live.autopilots import Mode
 from offboard.live.edit_run import EditRecord, EditRun, Wanted
+from offboard.live.fallback import ORBIT_TURN_RADII, Deferred, Fallback
 from offboard.live.ground_track import Fit, TrackCheck
-from offboard.live.messages import Ask, Reply
+from offboard.live.messages import Reply
 from offboard.live.watch import Watch
 from offboard.mission_list import MissionList
 from offboard.orbit import Orbit
-from offboard.raw_mission import LOITER_UNLIMITED, Composed, RawItem, RawMission, compose
+from offboard.raw_mission import LOITER_UNLIMITED, WAYPOINT, Composed, RawItem, RawMission, compose
 
-ORBIT_TURN_RADII = 1.5
-"""Radius of a circle of our own choice, in turn radii at the bank limit."""
-COME_BACK = 5.0
-"""After a fall-back the mission is sent again so often [s, wall clock]."""
 EXPECTED_EDIT = 0.3
 """An edit takes about this long; where the vehicle will be then is put before the new item [s]."""
-ELSEWHERE = 30.0
-"""A vehicle that shows a target this far from the one we sent it to has been sent there by others [m]."""
 COMPLETE = 5
 """MISSION_STATE at the end."""
 
@@ -58,7 +53,6 @@ class Editor:
         self.on_board: OnBoard | None = None
         self.status = EditStatus.IDLE
         self.records: list[EditRecord] = []
-        self.fallbacks = 0
         self._aboard = aboard
         self._watch = watch
         self._raw: RawMission | None = None
@@ -66,14 +60,8 @@ class Editor:
         self._begun = 0.0
         self._check: TrackCheck | None = None
         self._checked_again = False
-        self._back_at = math.inf
-        self._goto = -1
-        self._fallback_place: Waypoint | None = None
-        self._fallback_seen = False
+        self._fallback = Fallback(aboard, watch)
         self._mission_id = 0
-        self._wanted_mission: MissionList | None = None
-        self._wanted_current = 0
-        self._wanted_hold: Orbit | None = None
 
     @property
     def latest(self) -> OnBoard | None:
@@ -91,7 +79,12 @@ class Editor:
     @property
     def fallen_back(self) -> bool:
         """True while the vehicle circles because an edit could not be made."""
-        return self._back_at < math.inf
+        return self._fallback.active
+
+    @property
+    def fallbacks(self) -> int:
+        """How often it had to."""
+        return self._fallback.count
 
     def current(self) -> int:
         """Number of the waypoint that is flown to, or will be once the edit under way is flown."""
@@ -103,11 +96,18 @@ class Editor:
         return self.on_board.composed.entry_of(shown.current - self._aboard.rules.first_item)
 
     def set(self, raw: RawMission, mission: MissionList, composed: Composed) -> None:
-        """The vehicle has this mission, and no edit is under way."""
+        """The vehicle has this mission, and no edit is under way.
+
+        In flight it must be seen to fly it: ArduPilot goes on to its old target until an item is selected.
+        """
         self._raw = raw
         self.on_board = OnBoard(mission, composed)
         self._run = self._check = None
-        self._back_at = math.inf
+        self._fallback.end()
+        item = composed.item_of(current := self.current())
+        if self._watch.ours and item is not None and item.command == WAYPOINT:
+            target = mission.entries[current].waypoint
+            self._check = TrackCheck.begin(self._aboard.ownship(), target, self._aboard.performance)
         self._mission_id = 0
         self.status = EditStatus.IDLE
 
@@ -158,8 +158,8 @@ class Editor:
         After a fall-back it waits until the mission is tried again: a vehicle that refuses is not asked
         once a second, and whoever takes it out of the fall-back is noticed.
         """
-        if self.fallen_back and self._run is None and self._aboard.session.wall() < self._back_at:
-            self._wanted_mission, self._wanted_current, self._wanted_hold = mission, current, hold
+        if self.fallen_back and self._run is None and not self._fallback.due:
+            self._fallback.deferred = Deferred(mission, current, hold)
             return
         raw = self._loaded()
         aboard = self._aboard
@@ -184,49 +184,46 @@ class Editor:
         """End the edit under way without any further command: somebody else flies, or the link is lost."""
         if self._run is not None:
             self._finish(EditStatus.REFUSED)
-        self._check, self._back_at = None, math.inf
+        self._check = None
+        self._fallback.end()
 
     def on_reply(self, reply: Reply) -> None:
         """Take over the outcome of a request."""
         if self._run is not None:
             self._run.reply(reply)
-        if reply.token == self._goto and not reply.ok:
-            self._aboard.tell(
-                "alarm", f"the vehicle refused to go to a safe place as well ({reply.why}); take over"
-            )
+        self._fallback.on_reply(reply)
 
     def work(self) -> None:
         """Do what is next."""
         if self._hold_ended():
             self._aboard.tell("warning", "someone else has ended the hold: another item is flown to")
-        if self._run is not None:
-            self._move_on()
-            action = self._run.work(self._aboard.telemetry)
-            if self._run.started:
-                self._watch.expect(Mode.MISSION, self._aboard.mode)
-                self._run.started = False
-            if self._run.status is EditStatus.CONFIRMED:
-                self._confirmed()
-            elif action is EditAction.FALL_BACK:
-                self._fall_back()
-        elif self.fallen_back and self._sent_elsewhere():
+        who = self._fallback.taken() if self.fallen_back else None
+        if who is not None:
             self.give_up()
             self._watch.taken()
-            self._aboard.tell(
-                "alarm",
-                "someone else has sent the vehicle to another place than we did; nothing is commanded until "
-                "the mission mode is back",
-            )
-        elif self.fallen_back and self._aboard.session.wall() >= self._back_at:
-            now = self.latest
-            if now is not None:
-                self.change(
-                    self._wanted_mission or now.mission, self._wanted_current, self._wanted_hold, start=True
-                )
+            self._aboard.tell("alarm", f"{who}; nothing is commanded until the mission mode is back")
+        elif self._run is not None:
+            self._work_on(self._run)
+        elif self.fallen_back:
+            again = self._fallback.deferred
+            if again is not None and self._fallback.due:
+                self.change(again.mission, again.current, again.hold, start=True)
         elif self._check is not None:
-            self._look_at_track()
+            self._look_at_track(self._check)
 
     # --- inside -----------------------------------------------------------------------------------------
+
+    def _work_on(self, run: EditRun) -> None:
+        """An edit on its way."""
+        self._move_on(run)
+        action = run.work(self._aboard.telemetry)
+        if run.started:
+            self._watch.expect(Mode.MISSION, self._aboard.mode)
+            run.started = False
+        if run.status is EditStatus.CONFIRMED:
+            self._confirmed(run)
+        elif action is EditAction.FALL_BACK:
+            self._fall_back(run)
 
     def _hold_ended(self) -> bool:
         """True, once, if another item than the circle that was sent is flown to: not by our doing."""
@@ -264,10 +261,10 @@ class Editor:
         self.status = status
         self._run = None
 
-    def _move_on(self) -> None:
+    def _move_on(self, run: EditRun) -> None:
         """The vehicle may reach its target while an edit of what lies behind it is on its way."""
-        run, before, shown = self._run, self.on_board, self._aboard.telemetry.mission
-        if run is None or before is None or shown is None or run.sent_current or run.wanted.hold is not None:
+        before, shown = self.on_board, self._aboard.telemetry.mission
+        if before is None or shown is None or run.sent_current or run.wanted.hold is not None:
             return
         was = before.composed.entry_of(shown.current - self._aboard.rules.first_item)
         old, new = before.mission.entries, run.wanted.mission.entries
@@ -275,10 +272,7 @@ class Editor:
         if same and was == run.entry + 1 and shown.arrived > run.begun:
             run.move_on()
 
-    def _confirmed(self) -> None:
-        run = self._run
-        if run is None:
-            return
+    def _confirmed(self, run: EditRun) -> None:
         wanted = run.wanted
         self.on_board = OnBoard(wanted.mission, wanted.composed, wanted.hold)
         shown = self._aboard.telemetry.mission
@@ -286,16 +280,13 @@ class Editor:
         self._finish(EditStatus.CONFIRMED)
         if self.fallen_back:
             self._aboard.tell("info", "the vehicle flies its mission again")
-        self._back_at, self._wanted_mission = math.inf, None
+        self._fallback.end()
         self._watch.edited(self._aboard.time, again=self._watch.retried)
         circle = 0.0 if wanted.hold is None else wanted.hold.radius
         self._check = TrackCheck.begin(self._aboard.ownship(), run.target, self._aboard.performance, circle)
 
-    def _look_at_track(self) -> None:
+    def _look_at_track(self, check: TrackCheck) -> None:
         """The ground track after an edit."""
-        check = self._check
-        if check is None:
-            return
         shown = self.on_board
         if self._aboard.mode is not Mode.MISSION or shown is None:
             self._check = None
@@ -312,49 +303,15 @@ class Editor:
         if fit is Fit.ON:
             self._checked_again = False
             return
-        self._aboard.tell("alarm", "the vehicle does not fly along the line of the last edit; look at it")
+        self._aboard.tell("alarm", "the vehicle does not fly along the line of its mission; look at it")
         if not self._checked_again:
             self._checked_again = True
             self.change(shown.mission, current, shown.hold)
 
-    def _sent_elsewhere(self) -> bool:
-        """True if the vehicle, in the mode of our fall-back, has left the place of it for another.
-
-        The mode alone does not tell: a human who chooses PX4's Hold finds the vehicle in Hold. The ground
-        stations do it by sending it to where it is.
-        """
-        place, shown = self._fallback_place, self._aboard.telemetry.target
-        if place is None or shown is None or self._aboard.mode is not self._aboard.rules.goto_mode:
-            return False
-        north, east = self._aboard.frame.to_map(shown.latitude_deg, shown.longitude_deg)
-        there = math.hypot(north - place.north, east - place.east) <= ELSEWHERE
-        self._fallback_seen = self._fallback_seen or there
-        return self._fallback_seen and not there
-
-    def _fall_back(self) -> None:
+    def _fall_back(self, run: EditRun) -> None:
         """An edit could not be made: circle where its first waypoint is to be, and try again from there."""
-        run, aboard = self._run, self._aboard
-        if run is None:
-            return
-        wanted = run.wanted
         self._finish(run.status)
-        self.fallbacks += 1
-        words = "refused" if self.status is EditStatus.REFUSED else "did not confirm"
-        aboard.tell(
-            "alarm", f"the vehicle {words} an edit of its mission; it is sent to the new waypoint instead"
-        )
-        self._wanted_mission, self._wanted_current = wanted.mission, wanted.current
-        self._wanted_hold = wanted.hold
-        self._back_at = aboard.session.wall() + COME_BACK
-        goal = wanted.target
-        latitude_deg, longitude_deg = aboard.frame.to_geodetic(goal.north, goal.east)
-        radius = ORBIT_TURN_RADII * aboard.performance.turn_radius
-        if wanted.hold is not None:
-            radius = wanted.hold.radius * wanted.hold.direction
-        self._watch.expect(aboard.rules.goto_mode, aboard.mode)
-        self._fallback_place, self._fallback_seen = goal, False
-        absolute = goal.altitude + aboard.home.altitude_m
-        self._goto = aboard.session.ask(Ask.GOTO, latitude_deg, longitude_deg, absolute, radius)
+        self._fallback.begin(run.wanted, "refused" if run.status is EditStatus.REFUSED else "did not confirm")
 
 
 def _target(mission: MissionList, current: int, hold: Orbit | None, anchor: Waypoint) -> Waypoint:

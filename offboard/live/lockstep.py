@@ -11,8 +11,9 @@ import time
 from typing import TYPE_CHECKING, Protocol
 
 from offboard.errors import LinkError
+from offboard.live.connecting import quiet_mavsdk
 from offboard.live.messages import Ask, Message, Reply
-from offboard.live.session import MavsdkSession, quiet_mavsdk
+from offboard.live.session import MavsdkSession
 from offboard.raw_mission import RawItem
 
 if TYPE_CHECKING:

@@ -10,22 +10,21 @@ from offboard.edits import route_of
 from offboard.errors import LinkError
 from offboard.link import VehicleState
 from offboard.live.aboard import Aboard, request_rates
+from offboard.live.asking import SLOWEST_POLL, Asking
 from offboard.live.autopilots import Mode
 from offboard.live.editor import Editor, OnBoard
+from offboard.live.loading import Loading, flies_to_the_same
 from offboard.live.messages import Ask, Message, Reply
+from offboard.live.not_flown import NotFlown
 from offboard.live.telemetry import Telemetry
 from offboard.live.watch import Seen, Watch
 from offboard.mission import MissionItem, MissionPlan, MissionProgress
 from offboard.mission_list import MissionList
 from offboard.orbit import Orbit
-from offboard.raw_mission import TAKE_OFFS, Composed, RawItem, RawMission, compose
+from offboard.raw_mission import RawMission
 
 OBSTACLES = frozenset({"ADSB_VEHICLE", "OBSTACLE_DISTANCE", "OBSTACLE_DISTANCE_3D", "COLLISION"})
 """Messages that are handed on to whoever makes scans of them."""
-ASK_AGAIN = 3.0
-"""A mission that could not be had is asked for again after this time [s, wall clock]."""
-REPEAT = 30.0
-"""The same alarm is given again after this time [s]."""
 WORDS = {
     Seen.LINK_BACK: ("warning", "the link is back"),
     Seen.NO_POSITION: (
@@ -36,9 +35,6 @@ WORDS = {
     Seen.ARMED: ("info", "the vehicle has been armed"),
 }
 """What is only told."""
-NOT_ANSWERED = Reply(Ask.UPLOAD, -1, False, "no answer")
-SLOWEST_POLL = 0.1
-"""Time limits are looked at this often while nothing comes in [s, wall clock]."""
 
 
 class LiveVehicle:
@@ -60,6 +56,9 @@ class LiveVehicle:
         self.touch = touch
         self.watch = Watch(aboard.rules, expected=aboard.mode, disarmed=not aboard.telemetry.armed)
         self.editor = Editor(aboard, self.watch)
+        self._asking = Asking(aboard.session, self.pump)
+        self._not_flown = NotFlown(aboard, self.watch, touch=touch)
+        self._loading = Loading(aboard, self.editor, self.request, self._begun)
         self.link_losses = 0
         self.on_obstacle: Callable[[Message, Telemetry], None] | None = None
         """Given what comes in about obstacles, whoever makes scans of it."""
@@ -69,10 +68,6 @@ class LiveVehicle:
         self._paused = False
         self._route: Route | None = None
         self._route_key: object = None
-        self._waited: dict[int, Reply | None] = {}
-        self._download = -1
-        self._ask_at = math.inf
-        self._alarms: dict[str, float] = {}
 
     # --- what the avoidance core and the loop need ----------------------------------------------------
 
@@ -150,7 +145,7 @@ class LiveVehicle:
         if self._finished or latest is None or (route is None and not isinstance(decision, Hold)):
             return
         if not (self.watch.ours and self.touch):
-            self._cannot(decision)
+            self._not_flown.tell(decision)
             return
         current = self.editor.current()
         mission = latest.mission
@@ -187,20 +182,8 @@ class LiveVehicle:
         LinkError
             If the vehicle does not take it, or would not fly it.
         """
-        aboard = self.aboard
-        if (problem := aboard.rules.problem(raw, aboard.parameters)) is not None:
-            if not (aboard.simulated and aboard.session.set_parameter(aboard.rules.demand, 0)):
-                raise LinkError(problem)
-            aboard.parameters[aboard.rules.demand] = 0.0
-            aboard.tell("info", f"{aboard.rules.demand} of the simulated vehicle has been set to 0")
-        mission = self._list(raw)
-        composed = compose(raw, mission, 0, aboard.frame)
-        wire: tuple[RawItem, ...] = aboard.rules.wire(composed.items, aboard.home)
-        self.request(
-            aboard.session.upload(wire, aboard.rules.first_item), f"take the mission of {len(wire)} items"
-        )
-        self._take(raw, mission, composed)
-        self._select(aboard.rules.first_item)
+        self._loading.upload(raw)
+        self._select(self.aboard.rules.first_item)
 
     def download_mission(self) -> MissionPlan:
         """The mission as it is now, injected items included."""
@@ -214,17 +197,11 @@ class LiveVehicle:
         LinkError
             If it has none, or does not give it.
         """
-        self._adopt(self.request(self.aboard.session.ask(Ask.DOWNLOAD), "give its mission", 10.0))
+        self._loading.adopt()
 
     def has_mission(self, raw: RawMission) -> bool:
         """True if the vehicle flies to the same places in the same order, a take-off before them apart."""
-        now = self._loaded().composed
-        places = [now.items[i] for i, entry in enumerate(now.entries) if entry is not None]
-        wanted = [raw.items[i] for i in raw.flown_to]
-        more = len(places) - len(wanted)
-        begin = more if more > 0 and all(item.command in TAKE_OFFS for item in places[:more]) else 0
-        there = places[begin:]
-        return len(there) == len(wanted) and all(map(RawItem.same_place, there, wanted))
+        return flies_to_the_same(self._loaded().composed, raw)
 
     def start_mission(self) -> None:
         """Start, or resume after a pause, at the current item."""
@@ -305,27 +282,11 @@ class LiveVehicle:
 
     def wait_for(self, ready: Callable[[], bool], timeout: float) -> bool:
         """Wait until something is so; False if it is not within `timeout` wall seconds."""
-        until = self.aboard.session.wall() + timeout
-        while not ready():
-            if self.aboard.session.wall() >= until:
-                return False
-            self.pump(SLOWEST_POLL)
-        return True
+        return self._asking.wait_for(ready, timeout)
 
     def request(self, token: int, words: str, timeout: float = 10.0) -> Reply:
-        """Wait for the outcome of a request to the session; `words` say what the vehicle is to do.
-
-        Raises
-        ------
-        LinkError
-            If it does not do so.
-        """
-        self._waited[token] = None
-        self.wait_for(lambda: self._waited[token] is not None, timeout)
-        reply = self._waited.pop(token) or NOT_ANSWERED
-        if not reply.ok:
-            raise LinkError(f"the vehicle did not {words} ({reply.why})")
-        return reply
+        """Wait for the outcome of a request to the session; a `LinkError` with `words` if it fails."""
+        return self._asking.request(token, words, timeout)
 
     def close(self) -> None:
         """End the connection; the vehicle flies on as it does."""
@@ -339,25 +300,9 @@ class LiveVehicle:
             raise LinkError("the vehicle has no mission")
         return now
 
-    def _list(self, raw: RawMission) -> MissionList:
-        speed = raw.first_speed() or self.performance.airspeed
-        return MissionList.of(raw.plan(self.aboard.home.altitude_m), self.aboard.frame, speed)
-
-    def _take(self, raw: RawMission, mission: MissionList, composed: Composed) -> None:
-        self.editor.set(raw, mission, composed)
-        self._finished = False
-        self._route = None
-
-    def _adopt(self, reply: Reply) -> None:
-        items = reply.items[self.aboard.rules.first_item :]
-        now = self.editor.on_board
-        if now is not None and _same(items, now.composed.items):
-            return
-        raw = RawMission.of(items)
-        entries: list[int | None] = [None] * len(items)
-        for number, index in enumerate(raw.flown_to):
-            entries[index] = number
-        self._take(raw, self._list(raw), Composed(items, tuple(entries), 0))
+    def _begun(self) -> None:
+        """Another mission."""
+        self._finished, self._route = False, None
 
     def _follow(self, wall: float) -> None:
         """Edits, the end of the mission, and missions that are not ours."""
@@ -368,25 +313,12 @@ class LiveVehicle:
             self.finished_at = self.time
             self.aboard.tell("info", "the last waypoint has been reached")
         differs = not self.watch.lost and self.editor.differs()
-        if self.watch.mission_differs(differs, wall) or wall >= self._ask_at:
-            self._ask_at = math.inf
-            self.aboard.tell("warning", "someone else has changed the mission; it is taken over as it is now")
-            self._download = self.aboard.session.ask(Ask.DOWNLOAD)
+        self._loading.follow(self.watch.mission_differs(differs, wall))
 
     def _on_reply(self, reply: Reply) -> None:
-        if reply.token in self._waited:
-            self._waited[reply.token] = reply
+        self._asking.on_reply(reply)
         self.editor.on_reply(reply)
-        if reply.token != self._download:
-            return
-        self._download = -1
-        try:
-            if not reply.ok:
-                raise LinkError(reply.why)
-            self._adopt(reply)
-        except LinkError as error:
-            self.aboard.tell("alarm", f"the vehicle's mission is not known, no edit can be made ({error})")
-            self._ask_at = self.aboard.session.wall() + ASK_AGAIN
+        self._loading.on_reply(reply)
 
     def _on_seen(self, seen: Seen) -> None:
         """What follows from what the watch has noticed."""
@@ -398,7 +330,7 @@ class LiveVehicle:
                 tell("alarm", "the link is lost; the vehicle flies on along the mission that it has")
             case Seen.RESTARTED:
                 self.editor.give_up()
-                self._ask_at = self.aboard.session.wall()
+                self._loading.look_again()
                 if self.touch:
                     request_rates(self.aboard.session)
                 tell("alarm", "the autopilot has restarted; its mission is looked at again")
@@ -427,22 +359,6 @@ class LiveVehicle:
             case _:
                 pass
 
-    def _cannot(self, decision: Decision) -> None:
-        """Tell the pilot that a decision is not flown."""
-        if not self.touch:
-            why = "dry run"
-        elif self.watch.lost:
-            why = "the link is lost"
-        elif self.watch.disarmed:
-            why = "the vehicle is disarmed"
-        else:
-            why = f"someone else flies ({self.aboard.mode_name})"
-        text = f"{decision.why}; not flown, for {why}" if self.touch else f"{decision.why} (dry run)"
-        key = f"{decision.name} {None if decision.threat is None else decision.threat.ids} {why}"
-        if self.time - self._alarms.get(key, -math.inf) >= REPEAT:
-            self._alarms[key] = self.time
-            self.aboard.tell("alarm" if self.touch else "info", text)
-
     def _select(self, item: int) -> None:
         self.request(self.aboard.session.ask(Ask.SELECT, item), f"fly to item {item}")
         self._route = None
@@ -453,8 +369,3 @@ class LiveVehicle:
         self.request(self.aboard.session.ask(ask), words)
         if not self.wait_for(lambda: self.aboard.mode is mode, 5.0):
             raise LinkError(f"the vehicle agreed to {words}, but is in mode {self.aboard.mode_name}")
-
-
-def _same(items: tuple[RawItem, ...], others: tuple[RawItem, ...]) -> bool:
-    """True if two missions mean the same."""
-    return len(items) == len(others) and all(a.same(b) for a, b in zip(items, others, strict=True))

@@ -19,7 +19,7 @@ import pytest
 from avoidance.agent import Agent
 from avoidance.parameters import DEFAULT
 from offboard.link import EditStatus, Vehicle
-from offboard.live.session import connect
+from offboard.live.connecting import connect
 from offboard.live.starting import arm, fly_mission, open_vehicle
 from offboard.live.waiting import WaitingClock
 from offboard.mission import MissionItem

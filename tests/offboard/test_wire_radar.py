@@ -14,8 +14,9 @@ from avoidance import Ownship
 from offboard.errors import LinkError
 from offboard.frames import MapFrame
 from offboard.link import VehicleState
+from offboard.live.facts import Attitude
 from offboard.live.messages import Message
-from offboard.live.telemetry import Attitude, Telemetry
+from offboard.live.telemetry import Telemetry
 from offboard.sitl.sensors import body_frd
 from offboard.udp_radar import UdpRadar, sighting_of
 from offboard.wire_radar import WireRadar, to_ned

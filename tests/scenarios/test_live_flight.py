@@ -60,7 +60,7 @@ def test_those_who_decide_know_fence_and_rally_points():
         scenario = areas.put_into(scenario_of(flight.vehicle, None, "small"))
         with contextlib.closing(LiveFlight(scenario, flight.vehicle, Source("test"), DEFAULT)) as live:
             core = live._agent._agent
-    (waits_at,) = core._rally._points
+    (waits_at,) = core._vigil._rally._points
     assert (waits_at.north, waits_at.east) == pytest.approx((500.0, -500.0), abs=0.1)
     assert waits_at.altitude == pytest.approx(150.0)
     assert len(core._geofence.areas) == 1

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 from avoidance.agent import Agent
 from avoidance.parameters import DEFAULT
+from offboard.framing import Framer
 from offboard.link import Radar
 from offboard.live.lockstep import connect_in_step
 from offboard.live.starting import arm, fly_mission, open_vehicle
@@ -46,15 +47,21 @@ class Simulation:
         self.autopilot = next(iter(world.autopilots.values()))
         self.silent = False
         """True loses everything in both directions."""
+        self.deaf_to: frozenset[int] = frozenset()
+        """Commands of ours that get lost."""
         self._station = Codec(255, 190)
+        self._framer = Framer(self._station.decode)
         self.autopilot.open(0)
 
     def step(self, duration: float) -> None:
         self.world.advance(duration)
 
     def feed(self, data: bytes) -> None:
-        if not self.silent:
-            self.autopilot.feed(data)
+        if self.silent:
+            return
+        for message in self._framer.feed(data):
+            if getattr(message, "command", -1) not in self.deaf_to:
+                self.autopilot.feed(bytes(message.get_msgbuf()))
 
     def flush(self) -> bytes:
         data = self.autopilot.flush()

@@ -13,6 +13,11 @@ from tests.offboard.live.kit import SMALL, flying
 BOTH = pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
 
 
+def fallen_back(autopilot):
+    """The uploaded mission fits, one with a detour does not."""
+    return flying(autopilot, most_items=4 + (autopilot == "ardupilot"))
+
+
 def detours(vehicle) -> list:
     return [entry.waypoint for entry in vehicle.mission.entries if entry.injected]
 
@@ -113,8 +118,7 @@ def test_disarmed_in_flight_nothing_is_commanded(autopilot):
 
 @BOTH
 def test_a_refused_edit_falls_back_to_the_new_waypoint(autopilot):
-    # the uploaded mission fits, one with a detour does not
-    with flying(autopilot, most_items=4 + (autopilot == "ardupilot")) as flight:
+    with fallen_back(autopilot) as flight:
         flight.fly(60.0)
         own = flight.vehicle.aboard.ownship()
     assert flight.vehicle.editor.fallbacks >= 1
@@ -125,7 +129,7 @@ def test_a_refused_edit_falls_back_to_the_new_waypoint(autopilot):
 
 @BOTH
 def test_a_human_who_holds_while_we_have_fallen_back_wins(autopilot):
-    with flying(autopilot, most_items=4 + (autopilot == "ardupilot")) as flight:
+    with fallen_back(autopilot) as flight:
         flight.fly_until(lambda: flight.vehicle.editor.fallen_back, 60.0)
         flight.fly(2.0)
         flight.simulation.hold_here()
@@ -139,6 +143,36 @@ def test_a_human_who_holds_while_we_have_fallen_back_wins(autopilot):
         flight.fly(3.0)
     assert not flight.vehicle.watch.human
     assert "the mission is flown again" in flight.said("info")
+
+
+@BOTH
+def test_in_the_fall_back_another_mode_takes_over_as_the_alarm_says(autopilot):
+    with fallen_back(autopilot) as flight:
+        flight.fly_until(lambda: flight.vehicle.editor.fallen_back, 60.0)
+        flight.fly(2.0)
+        assert ("any mode but Hold takes over" in flight.said("alarm")) == (autopilot == "px4")
+        flight.simulation.set_mode(Task.RETURN)
+        flight.fly(3.0)
+        assert flight.vehicle.watch.human
+        edits = len(flight.vehicle.editor.records)
+        flight.fly(20.0)
+    assert len(flight.vehicle.editor.records) == edits
+
+
+@BOTH
+def test_a_human_s_hold_after_a_fall_back_that_was_never_flown_is_his(autopilot):
+    """PX4's Hold is the mode that we have asked for, but it does not lead to our place."""
+    with fallen_back(autopilot) as flight:
+        flight.simulation.deaf_to = frozenset({192, 43000})
+        flight.fly_until(lambda: flight.vehicle.editor.fallen_back, 60.0)
+        assert not flight.vehicle.watch.human
+        flight.simulation.set_mode(Task.HOLD)
+        flight.fly(4.0)
+        assert flight.vehicle.watch.human
+        edits = len(flight.vehicle.editor.records)
+        flight.fly(20.0)
+        assert len(flight.vehicle.editor.records) == edits
+    assert "nothing is commanded until the mission mode is back" in flight.said("alarm")
 
 
 def test_px4_that_drops_our_edit_to_hold_is_retried_once_then_it_is_a_humans():

@@ -11,10 +11,10 @@ import pytest
 
 from avoidance.parameters import DEFAULT
 from offboard.errors import InputError, LinkError
+from offboard.live.connecting import connect
 from offboard.live.messages import Ask, Reply
 from offboard.live.outside import MOST_PEERS, Udp, opener
 from offboard.live.relay import MOST_STRANGERS, Relay
-from offboard.live.session import connect
 from offboard.raw_mission import RawMission
 from offboard.signing import SigningPipe
 from offboard.sitl.autopilot import FLAVOURS
