@@ -103,14 +103,11 @@ def within_reach(points: Floats, centres: Floats, reach: Floats | float) -> Bool
     """
     if len(centres) <= FEW:
         return slice(None)
-    (low_north, low_east), (high_north, high_east) = points.min(axis=0), points.max(axis=0)
-    north, east = centres[:, 0], centres[:, 1]
-    return np.asarray(
-        (north + reach >= low_north)
-        & (north - reach <= high_north)
-        & (east + reach >= low_east)
-        & (east - reach <= high_east)
-    )
+    near = np.ones(len(centres), dtype=np.bool_)
+    for axis in (0, 1):
+        along, centre = points[:, axis], centres[:, axis]
+        near &= (centre + reach >= along.min()) & (centre - reach <= along.max())
+    return near
 
 
 def segments_clearance(starts: Floats, ends: Floats, centres: Floats) -> Floats:

@@ -131,19 +131,19 @@ def common_tangents(i: Ints, j: Ints, centres: Floats, radii: Floats) -> Tangent
     k = ρ_j − ρ_i: the tangent leaves at c_i − ρ_i n, has the length L = √(D² − k²) and the course
     (L D − k n(D)) / D². It is the generalisation of Eq. (27) to two circles.
     """
-    i, j = np.repeat(i, 4), np.repeat(j, 4)
-    senses = np.tile(SENSES, (len(i) // 4, 1))
-    sense_i, sense_j = senses[:, 0], senses[:, 1]
-    radius_i, radius_j = radii[i], radii[j]
-    k = sense_j * radius_j - sense_i * radius_i
+    radius_i, radius_j = radii[i, None], radii[j, None]
+    offset = SENSES[:, 0] * radius_i
+    k = SENSES[:, 1] * radius_j - offset
     between = centres[j] - centres[i]
     distance = np.hypot(between[:, 0], between[:, 1])
-    real = (distance > 0.0) & (distance >= np.abs(k) * (1.0 - TOUCHING))
-    real &= (radius_i > 0.0) | (sense_i > 0)
-    real &= (radius_j > 0.0) | (sense_j > 0)
-    ends = np.column_stack([i, sense_i, j, sense_j])[real]
-    k, between, distance = k[real], between[real], distance[real]
-    sense_i, sense_j, offset = sense_i[real], sense_j[real], (sense_i * radius_i)[real]
+    real = (distance > 0.0)[:, None] & (distance[:, None] >= np.abs(k) * (1.0 - TOUCHING))
+    real &= (radius_i > 0.0) | (SENSES[:, 0] > 0)
+    real &= (radius_j > 0.0) | (SENSES[:, 1] > 0)
+    pair, senses = np.nonzero(real)
+    ends = np.empty((len(pair), 4), dtype=np.int64)
+    ends[:, 0], ends[:, 1::2], ends[:, 2] = i[pair], SENSES[senses], j[pair]
+    sense_i, sense_j = ends[:, 1], ends[:, 3]
+    k, offset, between, distance = k[real], offset[real], between[pair], distance[pair]
     lines = np.empty((len(ends), 7))
     length = np.sqrt(np.maximum((distance - k) * (distance + k), 0.0))
     scale = distance * np.hypot(length, k)
