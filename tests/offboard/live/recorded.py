@@ -40,6 +40,8 @@ class Upload:
     flagged: int
     acknowledged: float
     items: list = field(default_factory=list)
+    """As the autopilot has them."""
+    sent: list = field(default_factory=list)
 
 
 class Recorded:
@@ -69,7 +71,8 @@ class Recorded:
             if m.get_type() in ("HOME_POSITION", "MISSION_CURRENT")
         }
         self._at = len(known)
-        self.items = list(self._uploads[self._next - 1].items)
+        self.items = list(self._uploads[self._next - 1].items) if self._next else []
+        self.sent = [upload.sent for upload in self._uploads]
         self._shift, self._more, self._from = 0, 0, 10**6
         self._incoming: list = []
         self._wanted = 0
@@ -141,6 +144,8 @@ class Recorded:
         accepted = mavlink.MAV_RESULT_ACCEPTED
         ack = mavlink.MAVLink_command_ack_message(message.command, accepted, 0, 0, *self._partner)
         self._out += self._codec.pack(ack)
+        if message.command == 511 and message.param1 == mavlink.MAVLINK_MSG_ID_HOME_POSITION:
+            self._out += self._first.get("HOME_POSITION", b"")
 
     def _on_mission_request_list(self, message: object) -> None:
         count = len(self.items) if message.mission_type == 0 else 0
@@ -195,8 +200,11 @@ def _uploads(every: list) -> list[Upload]:
             found.append(Upload(message.count, 0, float("inf")))
         elif kind == "MISSION_ITEM_INT" and ours and message.seq == len(found[-1].items):
             found[-1].items.append(message)
+            found[-1].sent.append(message)
             if message.current:
                 found[-1].flagged = message.seq
+        elif kind == "MISSION_ITEM_INT" and not ours and found and message.seq < len(found[-1].items):
+            found[-1].items[message.seq] = message  # read back: as it has it
         elif kind == "MISSION_ACK" and not ours and message.type == mavlink.MAV_MISSION_ACCEPTED:
             found[-1].acknowledged = min(found[-1].acknowledged, time)
     return [upload for upload in found if upload.acknowledged < float("inf")]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 
 import pytest
 
@@ -10,6 +11,7 @@ from avoidance import Detour, Waypoint
 from offboard.link import EditStatus
 from offboard.live.lockstep import connect_in_step
 from offboard.live.starting import open_vehicle
+from offboard.raw_mission import RawItem, RawMission
 from tests.offboard.live.recorded import Recorded
 from tests.offboard.sitl.recording import FOLDER
 
@@ -19,13 +21,22 @@ pytestmark = pytest.mark.skipif(
 
 
 @contextlib.contextmanager
-def watching(name, begin, *, gates=True):
+def watching(name, begin, *, gates=True, adopt=True):
     """A vehicle on its recorded mission, in flight."""
     peer = Recorded(name, begin, gates=gates)
     with contextlib.closing(connect_in_step(peer, 0.1)) as session:
         vehicle = open_vehicle(session)
-        vehicle.adopt_mission()
+        if adopt:
+            vehicle.adopt_mission()
         yield peer, vehicle
+
+
+def sent(peer):
+    """The first mission that the recorded ground station has sent, as it did."""
+    return [
+        RawItem(i.command, i.frame, (i.param1, i.param2, i.param3, i.param4), i.x, i.y, i.z)
+        for i in peer.sent[0]
+    ]
 
 
 def wait_for(vehicle, ready, seconds=30.0):
@@ -96,3 +107,31 @@ def test_a_mission_that_someone_else_puts_aboard_is_taken_over(name, begin):
         wait_for(vehicle, lambda: len(vehicle.mission.uploaded) != before, 5.0)
         assert len(vehicle.mission.uploaded) == before + 1
         assert said(vehicle, "alarm") == ""
+
+
+def test_arduplane_that_has_swallowed_the_first_waypoint_for_home_is_seen_as_it_is():
+    """Somebody else's upload without a home: its first item became home, and nobody was told."""
+    with watching("ardupilot_home_swallowed", 31.0, gates=False) as (peer, vehicle):
+        wanted = RawMission.of(sent(peer))
+        assert len(wanted.flown_to) == 3
+        assert not vehicle.has_mission(wanted)  # a dry run of it is refused
+        assert vehicle.has_mission(RawMission.of(wanted.items[1:]))
+        first, second = vehicle.route().waypoints
+        assert (first.north, first.east) == pytest.approx((800.0, 600.0), abs=2.0)
+        wait_for(vehicle, lambda: vehicle.route().waypoints[0] == second, 60.0)
+        own = vehicle.aboard.ownship()
+        assert math.hypot(own.north - first.north, own.east - first.east) < 90.0
+        assert said(vehicle, "alarm") == ""
+        assert not vehicle.editor.busy  # it was seen to fly where the list says
+
+
+def test_what_we_put_aboard_of_that_mission_begins_with_home():
+    """The same waypoints as ours: the list that goes out has one item more, and all of them are flown to."""
+    with watching("ardupilot_home_swallowed", 29.0, adopt=False) as (peer, vehicle):
+        wait_for(vehicle, lambda: peer.waits)
+        wanted = RawMission.of(sent(peer))
+        vehicle.upload_raw(wanted)
+        home, *rest = peer.items
+        assert (home.x, home.y) == pytest.approx((473977419, 85455940), abs=20)
+        assert [(item.x, item.y) for item in rest] == [(item.x, item.y) for item in wanted.items]
+        assert vehicle.has_mission(wanted)
