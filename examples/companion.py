@@ -3,12 +3,14 @@
     python examples/companion.py serial:///dev/ttyACM0:921600
 
 A human uploads the mission, arms and starts; from then on what ADSB_VEHICLE and OBSTACLE_DISTANCE_3D report
-is flown round. Any mode change by a human ends our commands until the mission mode is back.
+is flown round, within the geofence on board; where no way is free, the vehicle waits, at a rally point if one
+can be reached. Any mode change by a human ends our commands until the mission mode is back.
 """
 
 import sys
 
 from avoidance.agent import Agent
+from offboard.live.areas import areas_for_core
 from offboard.live.connecting import connect
 from offboard.live.starting import open_vehicle
 from offboard.live.waiting import WaitingClock
@@ -25,7 +27,8 @@ def main(url: str) -> None:
     vehicle.adopt_mission()
     radar = WireRadar(aboard.frame, aboard.clock.ours, 1000.0, lambda text: aboard.tell("alarm", text))
     vehicle.on_obstacle = radar.take
-    pilot = Pilot(vehicle, radar, Agent(vehicle.performance))
+    fence, rally = areas_for_core(vehicle)
+    pilot = Pilot(vehicle, radar, Agent(vehicle.performance, geofence=fence, rally=rally))
     for frame in fly([pilot], WaitingClock(vehicle), period=1.0):
         decision = frame.steps[0].decision
         if decision.route is not None:

@@ -37,19 +37,15 @@ def live_areas(vehicle: LiveVehicle, mission: Scenario | None) -> LiveAreas:
     mission : Scenario or None
         Where the mission was taken from, with its geofence and rally points; None for the one on board.
     """
-    frame, aboard = vehicle.aboard.frame, vehicle.aboard
+    frame = vehicle.aboard.frame
     fence = () if mission is None else mission.geofence
     rally = () if mission is None else mission.rally
     if not fence:
         fence = fence_areas(fence_aboard(vehicle), frame)
-        if fence:
-            aboard.tell("info", f"the geofence on board is kept to, {len(fence)} areas")
     elif vehicle.touch:
         put_fence(vehicle, geofence_data(fence, frame))
     if not rally:
         rally = rally_points(rally_aboard(vehicle), frame)
-        if rally:
-            aboard.tell("info", f"the rally points on board are used, {len(rally)} of them")
     elif vehicle.touch:
         put_rally(vehicle, rally_data(rally, frame))
     return LiveAreas(fence, rally)

@@ -8,7 +8,7 @@ import pytest
 
 from avoidance.parameters import DEFAULT
 from offboard.geofence import FenceCircle, FencePolygon, FenceType, GeofenceData
-from offboard.live.areas import fence_aboard, put_fence, put_rally, rally_aboard
+from offboard.live.areas import areas_for_core, fence_aboard, put_fence, put_rally, rally_aboard
 from offboard.live.lockstep import connect_in_step
 from offboard.live.messages import Ask, Reply
 from offboard.live.starting import open_vehicle
@@ -49,6 +49,18 @@ def test_what_is_put_aboard_is_what_is_there(autopilot):
         assert rally_aboard(vehicle) == RALLY
         assert simulation.mission() == before
         assert [e for e in vehicle.aboard.events if e.severity != "info"] == []
+
+
+def test_areas_that_lie_nowhere_near_are_not_taken_for_ours():
+    with waiting("px4") as (_, vehicle):
+        opposite = -14.4, 76.6 - 180.0
+        put_fence(vehicle, GeofenceData((), (FenceCircle(opposite, 450.0, FenceType.INCLUSION),)))
+        put_rally(vehicle, ((*opposite, 80.0),))
+        fence, rally = areas_for_core(vehicle)
+    assert (fence.areas, rally) == ((), ())
+    told = {event.severity: event.text for event in vehicle.aboard.events}
+    assert "the geofence on board is not known and not kept to" in told["alarm"]
+    assert "the rally points on board are not used" in told["warning"]
 
 
 def test_what_is_refused_is_told():
