@@ -29,6 +29,10 @@ if TYPE_CHECKING:
 T = TypeVar("T", Obstacle, Point)
 
 
+WIND = 3.0
+"""Steady wind that is allowed for where nothing is known of it [m/s]."""
+
+
 @dataclass(frozen=True, slots=True)
 class LiveMission:
     """A mission before it is on the vehicle."""
@@ -45,6 +49,16 @@ class LiveMission:
     seed: int = 0
     from_file: bool = False
     """True for a plan file: it says nothing of the wind."""
+
+    @property
+    def preset(self) -> str:
+        """Of the avoidance core, where the user gives none."""
+        return "default" if self.scenario is None else self.scenario.preset
+
+    @property
+    def wind_bound(self) -> float:
+        """Largest steady wind to allow for, where the user gives none [m/s]."""
+        return WIND if self.scenario is None or self.from_file else self.scenario.wind.speed
 
     def named(self, source: SourceChoice) -> Scenario:
         """A scenario with the name under which the run is kept."""

@@ -78,21 +78,17 @@ def offboard(
     with expected_errors():
         key = None if signing_key is None else load_key(signing_key)
         wanted = mission_of(mission)
-        known = wanted.scenario
-        parameters = run.preset(preset or (known.preset if known is not None else "default"))
+        parameters = run.preset(preset or wanted.preset)
         source = source_of(obstacles, wanted)
         directory = output or free_directory(wanted.named(source), 0)
         check_target(directory)
-        bound = wind_bound
-        if bound is None:
-            bound = 3.0 if known is None or wanted.from_file else known.wind.speed
         code = _connect_and_fly(
             connect,
             wanted,
             source,
             parameters,
             directory,
-            wind_bound=bound,
+            wind_bound=wanted.wind_bound if wind_bound is None else wind_bound,
             timeout=timeout,
             key=key,
             touch=not dry_run,

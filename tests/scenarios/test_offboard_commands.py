@@ -19,6 +19,7 @@ from scenarios.cli import app
 from scenarios.errors import ScenarioError
 from scenarios.live_mission import mission_of, source_of
 from scenarios.offboard_commands import fly
+from scenarios.plan_convert import convert
 from scenarios.sitl_world import SitlWorld
 from tests.offboard.live.kit import SMALL, STEP, Simulation
 
@@ -84,6 +85,42 @@ def test_a_signing_key_or_a_url_that_cannot_be_used_is_one_line(content, url, wo
     assert words in said[0]
     assert result.stdout == ""
     assert not (tmp_path / "run").exists()
+
+
+@pytest.fixture
+def plan(tmp_path):
+    """A scenario with wind and obstacles as a plan file, which has neither."""
+    lines = (
+        'preset = "paper"',
+        "home = {latitude_deg = 14.39, longitude_deg = 76.6, altitude_m = 600.0}",
+        "mission = [{north_m = 0, east_m = 0, altitude_m = 90}, {north_m = 9e3, east_m = 0, altitude_m = 9}]",
+        "wind = {north_m_s = 3.0, east_m_s = -4.0}",
+        "obstacles = [{north_m = 5000, east_m = 0, altitude_m = 150}]",
+    )
+    (tmp_path / "windy.toml").write_text("\n".join(lines))
+    convert(str(tmp_path / "windy.toml"), tmp_path / "windy.plan")
+    return tmp_path
+
+
+def test_obstacles_come_from_the_vehicle_unless_the_mission_is_a_scenario_that_has_some(plan):
+    assert source_of(None, mission_of(None)).kind == "mavlink"
+    assert source_of(None, mission_of("clear")).kind == "mavlink"
+    assert source_of(None, mission_of(str(plan / "windy.plan"))).kind == "mavlink"
+    assert source_of(None, mission_of("head-on")).kind == "scenario"  # traffic alone
+    own = source_of(None, mission_of("single"))
+    assert (own.kind, own.scenario.name) == ("scenario", "single")
+    given = source_of("mavlink", mission_of("single"))
+    assert (given.kind, given.scenario.obstacles) == ("mavlink", ())
+
+
+def test_wind_and_preset_are_the_scenario_s_and_else_3_m_s_and_default(plan):
+    found = {name: mission_of(name and str(plan / name)) for name in (None, "windy.plan", "windy.toml")}
+    assert {name: one.wind_bound for name, one in found.items()} == {
+        None: 3.0, "windy.plan": 3.0, "windy.toml": 5.0
+    }  # fmt: skip
+    assert {name: one.preset for name, one in found.items()} == {
+        None: "default", "windy.plan": "default", "windy.toml": "paper"
+    }  # fmt: skip
 
 
 def test_a_vehicle_that_may_be_real_is_left_alone_until_somebody_says_yes(tmp_path):
