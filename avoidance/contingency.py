@@ -15,7 +15,7 @@ import numpy as np
 
 from avoidance.flown import SEQUENCING_DELAY, late_turn
 from avoidance.geofence import FENCE, Walls
-from avoidance.geometry import distances, segments_clearance
+from avoidance.geometry import segments_clearance
 from avoidance.known import Circles, Known
 from avoidance.parameters import Parameters
 from avoidance.route_check import Blocked, altitude_bands, remaining_points
@@ -25,6 +25,8 @@ WIDE, TIGHT = 1.5, 1.2
 """Radii of a holding orbit in turn radii: the one preferred, and the smallest flown."""
 SPACING = 25.0
 """Distance between the points of a route at which an orbit is looked for [m]."""
+SHARP = 0.5 * math.pi
+"""Beyond this change of course a vehicle may leave a corner's triangle [rad]."""
 SIDES = np.array([1.0, -1.0])
 """Clockwise seen from above, anticlockwise."""
 
@@ -124,7 +126,7 @@ def first_trap(
     points = remaining_points(own, route, performance.tracking_error, performance.capture_distance)[0]
     inserted = len(points) - 1 - len(route.waypoints)
     longest = longest_stretch(performance, parameters.pop_up_room)
-    corners = _corner_room(points, own.course, performance)
+    room, courses = _corners(points, own.course, performance)
     steps = points[1:] - points[:-1]
     lengths = np.hypot(steps[:, 0], steps[:, 1])
     reached = np.concatenate([[0.0], np.cumsum(lengths)])
@@ -134,7 +136,7 @@ def first_trap(
     for k in range(len(points) - 1):
         leg = max(k - inserted, 0)
         circles = cut_on[leg]
-        at, rows = _narrow(points[k : k + 2], corners[k], circles, known.walls, performance)
+        at, rows = _narrow(points[k : k + 2], room[k], courses[k : k + 3], circles, known.walls, performance)
         for s, walls in zip((at + reached[k]).tolist(), rows.tolist(), strict=True):
             run = run + (s - last) if s - last < 2.0 * SPACING else 0.0
             last = s
@@ -184,31 +186,66 @@ def _clearance(points: Floats, circles: Circles, walls: Walls) -> Floats:
     return np.asarray(np.minimum(spheres, walls.clearance(points, points)))
 
 
-def _corner_room(points: Floats, course: float, performance: Performance) -> Floats:
-    """How much further an orbit may lie from where it is looked for, before and after each leg, (k, 2) [m].
+def room_outside(performance: Performance, turn: float) -> float:
+    """What a route round a sphere keeps from it so that an orbit on the other side is free all along [m].
 
-    In a corner the vehicle is off the legs and flies neither's direction. Up to 90 degrees it stays within
-    the triangle of entry, waypoint and exit, or overshoots the new leg; beyond, within three turn radii.
+    `turn` is the change of course at each of its corners [rad].
+    """
+    reach = orbit_reach(performance) + 2.0 * performance.tracking_error
+    return reach + float(_corner_room(np.array([turn]), performance)[0]) - TIGHT * performance.turn_radius
+
+
+def _corners(points: Floats, course: float, performance: Performance) -> tuple[Floats, Floats]:
+    """What is different about orbits near corners.
+
+    Returns
+    -------
+    room : array, shape (k, 2)
+        How much further an orbit may lie from where it is looked for, before and after each leg [m].
+    courses : array, shape (k + 2,)
+        Of the legs, with the present course before and the last one again behind [rad]. The vehicle flies
+        neither leg's in a corner but one in between; beyond 90 degrees `room` allows for that.
     """
     steps = points[1:] - points[:-1]
-    courses = np.empty(len(points))
-    courses[0], courses[1:] = course, np.arctan2(steps[:, 1], steps[:, 0])
-    turn = np.abs(np.mod(courses[1:] - courses[:-1] + math.pi, math.tau) - math.pi)
-    run = performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
-    late = late_turn(np.minimum(turn, 0.5 * math.pi), performance) * np.sin(turn)
-    gentle = np.maximum(run * np.sin(0.5 * turn), late)
-    off = np.where(turn <= 0.5 * math.pi, gentle, 3.0 * performance.turn_radius)
-    swung = 2.0 * np.sin(0.5 * turn) * math.hypot(TIGHT * performance.turn_radius, _lead(performance))
+    courses = np.empty(len(points) + 1)
+    courses[0], courses[1:-1] = course, np.arctan2(steps[:, 1], steps[:, 0])
+    courses[-1] = courses[-2]
+    turn = _turned(courses[:-1])
+    sharp = 3.0 * performance.turn_radius + 2.0 * np.sin(0.5 * turn) * _swing(performance)
     room = np.zeros((len(turn), 2))
-    room[:, 0] = off + swung
+    room[:, 0] = np.where(turn <= SHARP, _corner_room(turn, performance), sharp)
     room[:-1, 1] = room[1:, 0]
-    return room
+    return room, courses
+
+
+def _turned(courses: Floats) -> Floats:
+    """Changes of course, without their sign [rad]."""
+    return np.asarray(np.abs(np.mod(courses[1:] - courses[:-1] + math.pi, math.tau) - math.pi))
+
+
+def _corner_room(turn: Floats, performance: Performance) -> Floats:
+    """The same for corners of up to 90 degrees, their turn in radians, for the positions alone [m].
+
+    The vehicle stays within the triangle of entry, waypoint and exit, or overshoots the new leg; the centres
+    of its orbits lie on an arc from that of the one course to that of the other, whose chord is tested.
+    """
+    turn = np.minimum(turn, SHARP)
+    run = performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
+    off = np.maximum(run * np.sin(0.5 * turn), late_turn(turn, performance) * np.sin(turn))
+    return np.asarray(off + (1.0 - np.cos(0.5 * turn)) * _swing(performance))
+
+
+def _swing(performance: Performance) -> float:
+    """How far an orbit's centre lies from where it is decided on [m]."""
+    return math.hypot(TIGHT * performance.turn_radius, _lead(performance))
 
 
 def _narrow(
-    leg: Floats, room: Floats, circles: Circles, walls: Walls, performance: Performance
+    leg: Floats, room: Floats, courses: Floats, circles: Circles, walls: Walls, performance: Performance
 ) -> tuple[Floats, Ints]:
     """Where on a leg, ends of shape (2, 2), no orbit can be begun, and what is in the way on both sides.
+
+    Of `_corners`, `room` of shape (2,) and `courses` of shape (3,): before, on and after the leg.
 
     Returns
     -------
@@ -228,18 +265,28 @@ def _narrow(
     unit = (end - begin) / length
     radii = circles.hard[near] + widest
     at = _places(unit, begin, length, circles.centres[near], radii, (walls if fenced else Walls(), widest))
-    course = np.array([math.atan2(unit[1], unit[0])])
     run = performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
-    extra = np.maximum(
-        np.where(at < performance.capture_distance, room[0], 0.0), np.where(length - at < run, room[1], 0.0)
-    )
-    centres = _centres(begin + at[:, None] * unit, course, performance, TIGHT).reshape(-1, 2)
-    margins = np.empty((len(centres), len(near) + 1))
-    margins[:, :-1] = distances(centres, circles.centres[near]) - circles.hard[near]
-    margins[:, -1] = walls.clearance(centres, centres)
-    sides = margins.reshape(len(at), 2, -1)
-    free: Bools = (sides.min(axis=2) >= (reach + extra)[:, None]).any(axis=1)
-    return at[~free], np.append(near, -1)[sides[~free].argmin(axis=2)]
+    places, circle = begin + at[:, None] * unit, (circles.centres[near], circles.hard[near])
+    centres = _centres(places, courses[1:2], performance, TIGHT)
+    margins = _margins(centres, centres, *circle, walls)
+    extra = np.zeros(len(at))
+    zones = (at < performance.capture_distance, length - at < run)
+    for zone, more, course, turn in zip(zones, room, courses[::2], _turned(courses), strict=True):
+        extra[zone] = np.maximum(extra[zone], more)
+        if 0.0 < turn <= SHARP and zone.any():
+            swung = _centres(places[zone], np.array([course]), performance, TIGHT)
+            margins[zone] = np.minimum(margins[zone], _margins(centres[zone], swung, *circle, walls))
+    free: Bools = (margins.min(axis=2) >= (reach + extra)[:, None]).any(axis=1)
+    return at[~free], np.append(near, -1)[margins[~free].argmin(axis=2)]
+
+
+def _margins(starts: Floats, ends: Floats, centres: Floats, radii: Floats, walls: Walls) -> Floats:
+    """Of segments, ends (m, 2, 2), from n spheres and from the nearest wall, shape (m, 2, n + 1) [m]."""
+    first, last = starts.reshape(-1, 2), ends.reshape(-1, 2)
+    found = np.empty((len(first), len(centres) + 1))
+    found[:, :-1] = segments_clearance(first, last, centres) - radii
+    found[:, -1] = walls.clearance(first, last)
+    return found.reshape(len(starts), 2, -1)
 
 
 def _places(
@@ -278,4 +325,12 @@ def _blocked(known: Known, rows: Ints, leg: int, distance: float, own: Ownship, 
     return Blocked(threat, leg, rows)
 
 
-__all__ = ["Orbit", "first_trap", "longest_stretch", "orbit_from_here", "orbit_reach", "turning_room"]
+__all__ = [
+    "Orbit",
+    "first_trap",
+    "longest_stretch",
+    "orbit_from_here",
+    "orbit_reach",
+    "room_outside",
+    "turning_room",
+]

@@ -17,13 +17,14 @@ from typing import TypeAlias
 import numpy as np
 
 from avoidance.constraints import feasible_segments
-from avoidance.flown import flown_segments
+from avoidance.contingency import room_outside
+from avoidance.flown import SEQUENCING_DELAY, flown_segments
 from avoidance.geometry import point_distances, segment_point_distance
 from avoidance.problem import WaypointProblem
 from avoidance.search import search_waypoint
 from avoidance.tangent_graph import shortest_path
 from avoidance.traffic_route import two_waypoints
-from avoidance.types import Floats, Rung, Search
+from avoidance.types import Floats, Performance, Rung, Search
 
 RUNGS: tuple[tuple[Rung, frozenset[str]], ...] = (
     (Rung.WAYPOINT, frozenset()),
@@ -40,8 +41,8 @@ LARGEST_CORNER = math.radians(15.0)
 """Heading change of a corner of an exact route [rad]."""
 
 PADS = (0.5, 0.025, 1.0, 2.0, 4.0)
-"""By how much circles are widened in turn, in turn radii, until the route can be flown: turns of
-`LARGEST_CORNER` cut a little; next to a circle there is hardly any room; then ever more."""
+"""By how much circles are widened in turn, in turn radii, where a route with just enough room beside it for an
+orbit cannot be flown: next to a circle there may be hardly any room; then ever more."""
 
 ROOM_LEFT = 50.0
 """A separation from an intruder is worth a change of route if it is better by this [m]."""
@@ -214,19 +215,31 @@ def exact_route(problem: WaypointProblem, longest: float = math.inf) -> Corners 
     performance = problem.performance
     free_start = point_distances(problem.centres, problem.start) - 0.5
     free_target = point_distances(problem.centres, problem.target) - 0.5
-    for pad in np.multiply(PADS, performance.turn_radius).tolist():
+    beside = room_outside(performance, LARGEST_CORNER) - problem.parameters.margin
+    pads = (max(_cut(performance), beside), *np.multiply(PADS, performance.turn_radius).tolist())
+    for pad in pads:
         radii = np.maximum(np.minimum(np.minimum(problem.keep + pad, free_start), free_target), 0.0)
         walls = replace(problem.walls, room=problem.walls.room + pad)
         path = shortest_path(problem.start, problem.target, problem.centres, radii, walls, longest)
-        if path is None and pad == PADS[0] * performance.turn_radius:
-            continue  # there may be one that is narrower
-        if path is None:
+        if path is None and pad > pads[2]:
             return None
+        if path is None:
+            continue  # there may be one that is narrower
         corners = path.polyline(LARGEST_CORNER)
         if flyable(problem, corners):
             inner = corners[1:-1]
             return tuple((float(point[0]), float(point[1])) for point in inner)
     return None
+
+
+def _cut(performance: Performance) -> float:
+    """How far the corners of an exact route, which lie outside of a circle, are cut towards it at most [m].
+
+    The vehicle leaves a leg up to `run` before the corner and is led on to the next one, which touches the
+    circle halfway.
+    """
+    run = performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
+    return 0.5 * run * math.sin(LARGEST_CORNER)
 
 
 def _any_way(problem: WaypointProblem) -> bool:

@@ -134,12 +134,12 @@ def _rooms(gap: Gap, passage: Floats) -> Iterator[Floats]:
     """What to keep more from each obstacle, so that an orbit fits into a passage, least first [m]."""
     wide = max(turning_room(gap.performance) - gap.parameters.margin, 0.0)
     left = _left_of(passage, gap.problem.centres)
-    padded = max(wide - 0.5 * gap.performance.turn_radius, 0.0)  # the exact planner widens by as much again
-    for room in (wide, padded):
+    corners = 0.5 * gap.performance.turn_radius
+    for room in (wide, wide + corners):
         yield np.where(left, room, 0.0)
         yield np.where(left, 0.0, room)
-    yield np.full(len(left), wide)
-    yield np.full(len(left), 2.0 * wide)
+    yield np.full(len(left), wide + corners)
+    yield np.full(len(left), 2.0 * wide + corners)
 
 
 def _plan(gap: Gap, problem: WaypointProblem, planner: Way, rng: np.random.Generator) -> Plan | None:

@@ -8,7 +8,14 @@ import numpy as np
 import pytest
 
 from avoidance import Ownship, Route
-from avoidance.contingency import first_trap, longest_stretch, orbit_from_here, orbit_reach, turning_room
+from avoidance.contingency import (
+    first_trap,
+    longest_stretch,
+    orbit_from_here,
+    orbit_reach,
+    room_outside,
+    turning_room,
+)
 from avoidance.known import Known
 from avoidance.parameters import DEFAULT, PAPER
 from tests.avoidance.test_route_check import known
@@ -71,6 +78,21 @@ def test_a_trap_tells_where_it_begins_and_between_what() -> None:
     assert found.threat.distance == pytest.approx(3000.0, abs=300.0)
     assert found.threat.required == pytest.approx(turning_room(PERFORMANCE))
     assert len(found.threat.ids) == 2
+
+
+@pytest.mark.parametrize(("more", "trap"), [(0.5, False), (-25.0, True)])
+@pytest.mark.parametrize("turn", [5.0, 10.0, 15.0])
+def test_beside_a_sphere_an_orbit_is_free_on_the_other_side_as_soon_as_there_is_room(
+    turn: float, more: float, trap: bool
+) -> None:
+    corner = np.radians(turn)
+    away = (1000.0 + room_outside(PERFORMANCE, corner) + more) / np.cos(0.5 * corner)
+    bearings = np.arange(np.radians(-90.0), np.radians(60.0), corner)
+    round_it = [(float(away * np.sin(b)), float(-away * np.cos(b))) for b in bearings]
+    course = 0.5 * corner
+    own = ownship(round_it[0][0] - 500.0 * np.cos(course), round_it[0][1] + 500.0 * np.sin(course))
+    way = route(*round_it)
+    assert (first_trap(own, way, seen([(0.0, 0.0)], own, way), PERFORMANCE, DEFAULT) is not None) == trap
 
 
 def test_no_trap_without_the_promise() -> None:
