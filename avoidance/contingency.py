@@ -187,9 +187,10 @@ def _clearance(points: Floats, circles: Circles, walls: Walls) -> Floats:
 
 
 def room_outside(performance: Performance, turn: float) -> float:
-    """What a route round a sphere keeps from it so that an orbit on the other side is free all along [m].
+    """What a route round a sphere keeps from it so that orbits on the other side are free [m].
 
-    `turn` is the change of course at each of its corners [rad].
+    `turn` is the change of course at each of its corners [rad]; legs are longer than the run before a corner,
+    else there are stretches, shorter than `longest_stretch`, that would need a little more.
     """
     reach = orbit_reach(performance) + 2.0 * performance.tracking_error
     return reach + float(_corner_room(np.array([turn]), performance)[0]) - TIGHT * performance.turn_radius

@@ -41,8 +41,8 @@ LARGEST_CORNER = math.radians(15.0)
 """Heading change of a corner of an exact route [rad]."""
 
 PADS = (0.5, 0.025, 1.0, 2.0, 4.0)
-"""By how much circles are widened in turn, in turn radii, where a route with just enough room beside it for an
-orbit cannot be flown: next to a circle there may be hardly any room; then ever more."""
+"""By how much circles are widened in turn, in turn radii, where a route that leaves just enough room for
+orbits cannot be flown: next to a circle there may be hardly any room; then ever more."""
 
 ROOM_LEFT = 50.0
 """A separation from an intruder is worth a change of route if it is better by this [m]."""

@@ -81,7 +81,7 @@ def test_a_trap_tells_where_it_begins_and_between_what() -> None:
 
 
 @pytest.mark.parametrize(("more", "trap"), [(0.5, False), (-25.0, True)])
-@pytest.mark.parametrize("turn", [5.0, 10.0, 15.0])
+@pytest.mark.parametrize("turn", [10.0, 12.5, 15.0])
 def test_beside_a_sphere_an_orbit_is_free_on_the_other_side_as_soon_as_there_is_room(
     turn: float, more: float, trap: bool
 ) -> None:
