@@ -74,7 +74,12 @@ class RawItem:
         """True if both mean the same: autopilots change what does not matter on the way."""
         if self.command != other.command:
             return False
-        return self.command not in FLOWN_TO or self.same_place(other)
+        return self.same_place(other) if self.command in FLOWN_TO else self._same_values(other)
+
+    def _same_values(self, other: RawItem) -> bool:
+        """True if the parameters are alike, to what a float keeps of them; NaN and 0 leave one open."""
+        pairs = zip(self.params, other.params, strict=True)
+        return all(math.isclose(_given(a), _given(b), rel_tol=1e-3, abs_tol=1e-2) for a, b in pairs)
 
     def same_place(self, other: RawItem) -> bool:
         """True if both are at one place, to what the wire keeps of it."""
@@ -286,6 +291,10 @@ class _Builder:
         last = next((item for item in reversed(self.items) if item.command in FLOWN_TO | ENDS), None)
         if last is not None and last.command not in ENDS:
             self.add(replace(last, command=LOITER_UNLIMITED, params=(0.0, 0.0, 0.0, math.nan)))
+
+
+def _given(value: float) -> float:
+    return 0.0 if math.isnan(value) else value
 
 
 def _waits_there(last: RawItem, after: RawItem) -> bool:

@@ -115,7 +115,8 @@ class WireRadar:
         place = abs(latitude_deg) <= 90.0 and abs(longitude_deg) <= 180.0
         if not (flags & VALID_COORDS and place):
             return
-        if math.hypot(latitude_deg - fix.latitude_deg, longitude_deg - fix.longitude_deg) > 10.0:
+        aside_deg = math.remainder(longitude_deg - fix.longitude_deg, 360.0)
+        if math.hypot(latitude_deg - fix.latitude_deg, aside_deg) > 10.0:
             return
         known = bool(flags & VALID_ALTITUDE)
         altitude = message.number("altitude") / 1e3 - (fix.amsl - fix.altitude) if known else fix.altitude

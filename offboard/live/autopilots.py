@@ -65,6 +65,8 @@ class Rules(Protocol):
     def loiter_radius(self) -> str: ...
     @property
     def first_item(self) -> int: ...
+    @property
+    def mission_taken(self) -> str: ...
     def mode(self, custom_mode: int) -> Mode:
         """The meaning of HEARTBEAT.custom_mode."""
 
@@ -125,6 +127,8 @@ class Px4:
     demand: str = "MIS_TKO_LAND_REQ"
     """What makes it ask for a take-off or a landing in each mission."""
     first_item: int = 0
+    mission_taken: str = ""
+    """What it says when it has taken a mission; PX4 tells by another `mission_id`."""
 
     def mode(self, custom_mode: int) -> Mode:
         """The meaning of HEARTBEAT.custom_mode: main mode in byte 2, sub-mode in byte 3."""
@@ -214,6 +218,8 @@ class ArduPilot:
     """Radius of a circle where the item gives none [m]; negative turns to the left."""
     demand: str = ""
     first_item: int = 1
+    mission_taken: str = "Flight plan received"
+    """What it says when it has taken a mission: one of as many items cannot be seen otherwise."""
 
     def mode(self, custom_mode: int) -> Mode:
         """The meaning of HEARTBEAT.custom_mode."""

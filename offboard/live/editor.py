@@ -77,6 +77,11 @@ class Editor:
         return self._run is not None or self._check is not None
 
     @property
+    def sending(self) -> bool:
+        """True while an edit is under way: what is on board meanwhile is anybody's guess."""
+        return self._run is not None
+
+    @property
     def fallen_back(self) -> bool:
         """True while the vehicle circles because an edit could not be made."""
         return self._fallback.active
@@ -119,7 +124,9 @@ class Editor:
         first, last = self._aboard.rules.first_item, len(now.mission.entries) - 1
         if now.composed.entry_of(shown.current - first) > last:
             return True
-        at = next(i for i, entry in enumerate(now.composed.entries) if entry == last)
+        at = max(
+            i for i, entry in enumerate(now.composed.entries) if entry == last
+        )  # a circle may come first
         if shown.current - first != at:
             return False
         item = now.composed.items[at]
@@ -151,6 +158,11 @@ class Editor:
         if shown.mission_id and not self._mission_id:
             self._mission_id = shown.mission_id
         return shown.mission_id != self._mission_id
+
+    def same_as_before(self) -> None:
+        """What looked like another mission has been looked at, and is the one that is on board."""
+        shown = self._aboard.telemetry.mission
+        self._mission_id = 0 if shown is None else shown.mission_id
 
     def change(self, mission: MissionList, current: int, hold: Orbit | None, *, start: bool = False) -> None:
         """Begin an edit; one under way is given up for it.
@@ -246,7 +258,7 @@ class Editor:
             self._finish(EditStatus.TIMED_OUT)
         wire: tuple[RawItem, ...] = aboard.rules.wire(wanted.composed.items, aboard.home)
         self._run = EditRun(
-            aboard.session, aboard.rules, wanted, wire, aboard.times, aboard.frame, start=start
+            aboard.session, aboard.rules, wanted, wire, aboard.times.of(len(wire)), aboard.frame, start=start
         )
         self._begun = aboard.time
         self.status = EditStatus.PENDING

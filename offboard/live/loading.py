@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 from offboard.errors import LinkError
 from offboard.live.aboard import Aboard
@@ -82,11 +83,10 @@ class Loading:
 
     def follow(self, differs: bool) -> None:
         """Ask for the mission if it is not ours any more, or could not be had."""
+        if self._editor.sending:
+            return
         if differs or self._aboard.session.wall() >= self._ask_at:
             self._ask_at = math.inf
-            self._aboard.tell(
-                "warning", "someone else has changed the mission; it is taken over as it is now"
-            )
             self._download = self._aboard.session.ask(Ask.DOWNLOAD)
 
     def on_reply(self, reply: Reply) -> None:
@@ -94,6 +94,9 @@ class Loading:
         if reply.token != self._download:
             return
         self._download = -1
+        if self._editor.sending:  # half of it may be in the list
+            self.look_again()
+            return
         try:
             if not reply.ok:
                 raise LinkError(reply.why)
@@ -103,24 +106,35 @@ class Loading:
             self._ask_at = self._aboard.session.wall() + ASK_AGAIN
 
     def _adopt(self, reply: Reply) -> None:
+        """Take over what has been downloaded; a `LinkError` if that is no mission that can be kept clear."""
         items = reply.items[self._aboard.rules.first_item :]
         now = self._editor.on_board
         if now is not None and _same(items, now.composed.items):
+            self._editor.same_as_before()
             return
-        if now is not None:
-            words = "someone else has changed the mission; it is taken over as it is now"
-            self._aboard.tell("warning", words)
         raw = RawMission.of(items)
+        mission = self._list(raw)
         entries: list[int | None] = [None] * len(items)
         for number, index in enumerate(raw.flown_to):
             entries[index] = number
-        self._take(raw, self._list(raw), Composed(items, tuple(entries), 0))
+        if now is not None:
+            words = "someone else has changed the mission; it is taken over as it is now"
+            self._aboard.tell("warning", words)
+        self._take(raw, mission, Composed(items, tuple(entries), 0))
 
     def _list(self, raw: RawMission) -> MissionList:
         speed = raw.first_speed() or self._aboard.performance.airspeed
-        return MissionList.of(raw.plan(self._aboard.home.altitude_m), self._aboard.frame, speed)
+        plan = raw.plan(self._aboard.home.altitude_m)
+        try:
+            plan.check()
+            return MissionList.of(plan, self._aboard.frame, speed)
+        except ValueError as error:
+            raise LinkError(f"the mission cannot be flown: {error}") from error
 
     def _take(self, raw: RawMission, mission: MissionList, composed: Composed) -> None:
+        aboard = self._aboard
+        edit_time = aboard.times.of(len(composed.items)).worst_case
+        aboard.performance = replace(aboard.performance, edit_time=edit_time)
         self._editor.set(raw, mission, composed)
         self._begun()
 

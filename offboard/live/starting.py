@@ -70,6 +70,10 @@ def open_vehicle(
     telemetry.home = home
     if frame is None:
         frame = MapFrame(*home)
+    try:
+        frame.to_map(fix.latitude_deg, fix.longitude_deg)
+    except ValueError as error:
+        raise LinkError(f"the vehicle is nowhere near the mission: is it the right one? ({error})") from error
     performance = limits.performance(times or EditTimes(), wind_bound)
     clock = VehicleClock(fix.time, session.wall())
     aboard = Aboard(

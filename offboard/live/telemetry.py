@@ -21,8 +21,16 @@ OUT_OF_ORDER = 10.0
 RESTART_PROOF = 3
 """So many messages in a row that are older than that are believed."""
 DEGREE = 1e7
+METRES = 111_000.0
+"""In a degree of latitude, roughly."""
+FARTHEST = 5e6
+"""A target further away than this is none [m]."""
 NO_MISSION = 65535
 """MISSION_CURRENT.total of PX4 without a mission."""
+FASTEST = 500.0
+"""No vehicle flies faster than this [m/s] ..."""
+JUMP = 1000.0
+"""... nor is it found further than this from where it would be then [m]: not a position, but a fault."""
 STALE = 30.0
 """Positions are kept this long for those who ask about the past [s]."""
 
@@ -121,7 +129,7 @@ class Telemetry:
 
     def _target(self, message: Message) -> None:
         place = message.number("lat_int") / DEGREE, message.number("lon_int") / DEGREE
-        if _on_earth(*place):
+        if _on_earth(*place) and (self.fix is None or _apart(self.fix, *place) < FARTHEST):
             self.target = TargetShown(*place, message.arrived)
 
     def _landed(self, message: Message) -> None:
@@ -180,6 +188,10 @@ class Telemetry:
                 return
             self.restarts += 1
             self.fixes.clear()
+        elif newest is not None and _apart(newest, latitude_deg, longitude_deg) > JUMP + FASTEST * (
+            time - newest.time
+        ):
+            return
         self._older = 0
         self.placed = message.arrived
         heading = message.number("hdg") / 100.0
@@ -228,6 +240,14 @@ def _between(a: Fix, b: Fix, time: float) -> Fix:
         keep * a.velocity_east + part * b.velocity_east,
         keep * a.climb_rate + part * b.climb_rate,
         b.heading,
+    )
+
+
+def _apart(fix: Fix, latitude_deg: float, longitude_deg: float) -> float:
+    """Roughly how far a place is from a position [m]."""
+    aside_deg = math.remainder(longitude_deg - fix.longitude_deg, 360.0)
+    return METRES * math.hypot(
+        latitude_deg - fix.latitude_deg, aside_deg * math.cos(math.radians(latitude_deg))
     )
 
 

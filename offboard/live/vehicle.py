@@ -270,6 +270,8 @@ class LiveVehicle:
             self.aboard.clock.heard(telemetry.fix.time, wall)
         for severity, text in telemetry.texts:
             self.aboard.tell("info" if severity > 4 else "warning", f"{self.aboard.rules.name}: {text}")
+            if text and text == self.aboard.rules.mission_taken and not self.editor.sending:
+                self._loading.look_again()
         telemetry.texts.clear()
         for seen in self.watch.look(telemetry, self.time, wall):
             self._on_seen(seen)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
+from functools import lru_cache
 
 from avoidance import Waypoint
 from offboard.frames import MapFrame
@@ -109,7 +110,7 @@ def _leg(
     if item.command == mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH:
         place = Waypoint(0.0, 0.0, before[-1].target.waypoint.altitude if before else 100.0)
     elif item.has_place:
-        place = Waypoint(*frame.to_map(item.latitude_deg, item.longitude_deg), altitude)
+        place = Waypoint(*_on_map(frame, item.latitude_deg, item.longitude_deg), altitude)
     else:
         end = before[-1].target.waypoint if before else Waypoint(0.0, 0.0, altitude)
         place = Waypoint(end.north, end.east, altitude)
@@ -124,6 +125,12 @@ def _leg(
         acceptance = max(acceptance, 1.2 * radius)  # the circle is joined from outside
     target = Target(place, acceptance, airspeed, math.inf if kind is not Kind.POINT else stay)
     return Leg(seq, kind, target, radius, -1 if wanted < 0.0 else 1)
+
+
+@lru_cache(maxsize=8192)
+def _on_map(frame: MapFrame, latitude_deg: float, longitude_deg: float) -> tuple[float, float]:
+    """A place on the map; remembered, for a plan is made anew with each item that is written over."""
+    return frame.to_map(latitude_deg, longitude_deg)
 
 
 def _stay(item: WireItem, radius: float, airspeed: float) -> float:

@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 
 from avoidance.parameters import DEFAULT
 from offboard.errors import LinkError
+from offboard.frames import MapFrame
 from offboard.live.lockstep import connect_in_step
 from offboard.live.messages import Message
 from offboard.live.starting import open_vehicle, with_take_off
@@ -131,6 +132,12 @@ def test_a_vehicle_that_may_be_real_is_left_alone_until_somebody_says_yes(tmp_pa
             fly(vehicle, wanted, source_of(None, wanted), DEFAULT, tmp_path)
         assert simulation.mission() == before
         assert not simulation.autopilot.captain.armed
+
+
+def test_a_vehicle_on_the_other_side_of_the_earth_is_not_the_mission_s():
+    opposite = MapFrame(-14.39, 76.60 - 180.0, 600.0)
+    with waiting() as (_, vehicle), pytest.raises(LinkError, match="is it the right one"):
+        open_vehicle(vehicle.aboard.session, opposite)
 
 
 def test_no_vehicle_is_armed_whose_obstacles_cannot_be_known(tmp_path):

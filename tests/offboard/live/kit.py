@@ -86,6 +86,14 @@ class Simulation:
         nan = float("nan")
         self.send(mavlink.MAVLink_command_long_message(1, 1, 192, 0, -1.0, 1.0, 0.0, nan, nan, nan, nan))
 
+    def put_aboard(self, items: list) -> None:
+        """Another ground station's upload has come to its end."""
+        if self.autopilot.flavour.atomic:
+            self.autopilot.uploaded(items, self.autopilot.captain.current)
+        else:
+            self.autopilot.overwritten(items, complete=True)
+        self.autopilot._missions.store(0, items)
+
     def mission(self) -> tuple:
         """What is in the autopilot's memory."""
         return self.autopilot.captain.items

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
 from offboard.link import EditStatus
 from offboard.sitl.modes import Task
+from scenarios.scenario import Point
 from tests.offboard.live.kit import SMALL, flying
 
 BOTH = pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
@@ -104,6 +106,60 @@ def test_a_mission_changed_by_someone_else_is_taken_over(autopilot):
         flight.fly(8.0)
     assert "someone else has changed the mission" in flight.said("warning")
     assert len(flight.vehicle.mission.uploaded) == len(SMALL.mission) - 1
+
+
+@BOTH
+def test_a_mission_of_as_many_items_that_someone_else_puts_aboard_is_noticed(autopilot):
+    """ArduPilot's total is the same, and it has no checksum: what it says when it takes a mission tells."""
+    with flying(autopilot) as flight:
+        flight.fly(10.0)
+        theirs = list(flight.simulation.mission())
+        theirs[-2] = replace(theirs[-2], x=theirs[-2].x + 20_000)
+        flight.simulation.put_aboard(theirs)
+        flight.fly(8.0)
+        assert flight.said("warning").count("someone else has changed the mission") == 1
+        moved = flight.vehicle.mission.uploaded[2].waypoint
+        assert moved.north == pytest.approx(SMALL.mission[-1].north + 222.0, abs=3.0)
+        flight.fly(60.0)
+    assert [record.status for record in flight.vehicle.editor.records] == [EditStatus.CONFIRMED]
+    assert flight.said("alarm") == ""
+
+
+@BOTH
+def test_a_mission_that_cannot_be_flown_is_an_alarm_and_the_watch_goes_on(autopilot):
+    with flying(autopilot) as flight:
+        flight.fly(10.0)
+        theirs = list(flight.simulation.mission())
+        theirs[-2:] = [replace(theirs[-2], z=float("nan"))]
+        flight.simulation.put_aboard(theirs)
+        flight.fly(8.0)
+        assert "no edit can be made (the mission cannot be flown: item" in flight.said("alarm")
+        assert flight.vehicle.watch.ours
+
+
+@BOTH
+def test_our_own_edits_are_nobody_else_s_mission(autopilot):
+    with flying(autopilot) as flight:
+        flight.fly(90.0)
+    assert [record.status for record in flight.vehicle.editor.records] == [EditStatus.CONFIRMED]
+    assert flight.said("warning") == ""
+
+
+@BOTH
+def test_an_edit_of_a_mission_of_three_hundred_items(autopilot):
+    """More than fit into a byte, in the list as well as in the number of the item that is flown to."""
+    long = replace(SMALL, mission=tuple(Point(60.0 * number, 0.0, 200.0) for number in range(300)))
+    with flying(autopilot, long) as flight:
+        assert flight.vehicle.performance.edit_time > 15.0  # a long list takes its time
+        flight.vehicle.set_current_mission_item(258)
+        flight.fly(60.0)
+        assert [record.status for record in flight.vehicle.editor.records] == [EditStatus.CONFIRMED]
+        assert len(detours(flight.vehicle)) == 1
+        assert flight.vehicle.mission_progress().current == 258
+        assert flight.simulation.autopilot.captain.current == 259 + (
+            autopilot == "ardupilot"
+        )  # an anchor first
+    assert flight.said("alarm") == ""
 
 
 @BOTH
