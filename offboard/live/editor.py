@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 from avoidance import Waypoint
@@ -12,18 +11,17 @@ from offboard.link import EditStatus
 from offboard.live.aboard import Aboard
 from offboard.live.autopilots import Mode
 from offboard.live.edit_run import EditRecord, EditRun, Wanted
-from offboard.live.fallback import ORBIT_TURN_RADII, Deferred, Fallback
+from offboard.live.fallback import Deferred, Fallback
 from offboard.live.ground_track import Fit, TrackCheck
 from offboard.live.messages import Reply
+from offboard.live.mission_end import at_end, end_radius
 from offboard.live.watch import Watch
 from offboard.mission_list import MissionList
 from offboard.orbit import Orbit
-from offboard.raw_mission import LOITER_UNLIMITED, WAYPOINT, Composed, RawItem, RawMission, compose
+from offboard.raw_mission import WAYPOINT, Composed, RawItem, RawMission, compose
 
 EXPECTED_EDIT = 0.3
 """An edit takes about this long; where the vehicle will be then is put before the new item [s]."""
-COMPLETE = 5
-"""MISSION_STATE at the end."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,34 +116,16 @@ class Editor:
 
     def at_end(self) -> bool:
         """True if the vehicle shows that it has come to the end of its mission."""
-        shown, now = self._aboard.telemetry.mission, self.on_board
-        if now is None or shown is None or self._run is not None or now.hold is not None:
+        now = self.on_board
+        if now is None or self._run is not None or now.hold is not None:
             return False
-        first, last = self._aboard.rules.first_item, len(now.mission.entries) - 1
-        if now.composed.entry_of(shown.current - first) > last:
-            return True
-        at = max(
-            i for i, entry in enumerate(now.composed.entries) if entry == last
-        )  # a circle may come first
-        if shown.current - first != at:
-            return False
-        item = now.composed.items[at]
-        if item.command == LOITER_UNLIMITED:
-            own, end = self._aboard.ownship(), now.mission.entries[last].waypoint
-            return math.hypot(own.north - end.north, own.east - end.east) <= self.end_radius()
-        return self._aboard.telemetry.reached - first == at or shown.state == COMPLETE
+        return at_end(self._aboard, now.mission, now.composed)
 
     def end_radius(self) -> float:
         """How near the vehicle comes to its last waypoint [m]: a mission may end on a circle about it."""
-        performance, now = self._aboard.performance, self.on_board
+        now = self.on_board
         last = None if now is None else now.composed.item_of(len(now.mission.entries) - 1)
-        if last is None or last.command != LOITER_UNLIMITED:
-            return performance.acceptance_radius
-        radius = abs(last.params[2]) or abs(
-            self._aboard.parameters.get(self._aboard.rules.loiter_radius, 0.0)
-        )
-        radius = max(radius, ORBIT_TURN_RADII * performance.turn_radius)
-        return max(performance.acceptance_radius, 1.1 * radius + performance.tracking_error)
+        return end_radius(self._aboard, last)
 
     def differs(self) -> bool:
         """True if the vehicle shows a mission other than the one that it should have."""

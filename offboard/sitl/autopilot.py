@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 from offboard.link import VehicleState
 from offboard.sitl.aircraft import HIGHEST, LOWEST, Aircraft
+from offboard.sitl.announcing import Announcing
 from offboard.sitl.ardupilot import ARDUPILOT, MISSION_TOTAL
 from offboard.sitl.captain import Captain
 from offboard.sitl.commands import Command, Commands
@@ -78,15 +79,13 @@ class Autopilot:
         self.parameters = Parameters(
             self.flavour.parameters, self._given(aircraft), bytewise=self.flavour.bytewise
         )
+        self._links = Links(self.settings.system_id, self.settings.signing_key, self.settings.signing_clock)
+        self._announcing = Announcing(self.flavour, self._links)
+        self._say = self._announcing.say
         self.captain = Captain(aircraft, self.flavour, self.parameters, self._say, self._item_reached)
         self.telemetry = Telemetry(self.captain, self.settings.start_time)
-        self._links = Links(self.settings.system_id, self.settings.signing_key, self.settings.signing_clock)
         self._missions = MissionProtocol(self.flavour, self, self._links.send, self.settings.retry)
         self._commands = Commands(self.captain, self, self._say)
-        self._text_id = 0
-        self._reached: tuple[int, int, float] | None = None
-        self._shown: tuple[object, ...] = ()
-        self._shown_aim: object = None
         self._handlers: dict[str, Handler] = {
             "COMMAND_LONG": self._command,
             "COMMAND_INT": self._command,
@@ -106,7 +105,7 @@ class Autopilot:
             self._handle(link, message)
         if messages:
             self.captain.step()
-            self._tell_changes()
+            self._announcing.changes(self.captain, self.telemetry)
 
     def step(self, duration: float) -> None:
         """Let `duration` seconds pass: fly, then tell of it."""
@@ -117,8 +116,8 @@ class Autopilot:
         """What is to be told at the present instant, after the aircraft has moved on."""
         now = self.aircraft.clock
         self._missions.step(now)
-        self._tell_changes()
-        self._repeat_reached(now)
+        self._announcing.changes(self.captain, self.telemetry)
+        self._announcing.repeat(now)
         made: dict[int, Packed | None] = {}
         for link in self._links:
             for message_id in link.streams.due(now):
@@ -165,7 +164,7 @@ class Autopilot:
         self.captain.power_on()
         for link in self._links:
             link.streams = Streams()
-        self._reached = None
+        self._announcing.forget()
 
     # What a world needs of a vehicle
 
@@ -335,47 +334,5 @@ class Autopilot:
         if self.captain.set_current(message.seq):
             self.send_message(link, mavlink.MAVLINK_MSG_ID_MISSION_CURRENT)
 
-    def _say(self, event: Say, **values: object) -> None:
-        """Tell an event as text, if this autopilot does."""
-        text = self.flavour.texts.get(event)
-        if text is None:
-            return
-        self._text_id = (self._text_id + 1) % 0xFFFF if self.flavour.atomic else 0
-        words = text[1].format(**values).encode()[:50]
-        self.broadcast(mavlink.MAVLink_statustext_message(text[0], words, self._text_id, 0))
-
     def _item_reached(self, seq: int) -> None:
-        self.broadcast(mavlink.MAVLink_mission_item_reached_message(seq))
-        self._reached = (seq, self.flavour.reached_repeats - 1, self.aircraft.clock + 1.0)
-
-    def _repeat_reached(self, now: float) -> None:
-        """PX4 says again and again which item it has reached last."""
-        if self._reached is None or now < self._reached[2]:
-            return
-        seq, left, due = self._reached
-        if left <= 0:
-            self._reached = None
-            return
-        self.broadcast(mavlink.MAVLink_mission_item_reached_message(seq))
-        self._reached = (seq, left - 1, due + 1.0)
-
-    def _tell_changes(self) -> None:
-        """Mode, mission and target are told as soon as they change."""
-        captain = self.captain
-        mode = (captain.mode, captain.armed)
-        mission = (captain.current, captain.items, captain.mission_state)
-        if self._shown != (mode, mission):
-            before, self._shown = self._shown, (mode, mission)
-            if before[:1] != (mode,):
-                self._tell(mavlink.MAVLINK_MSG_ID_HEARTBEAT)
-            if before[1:] != (mission,):
-                self._tell(mavlink.MAVLINK_MSG_ID_MISSION_CURRENT)
-        if self.aircraft.aim != self._shown_aim:
-            self._shown_aim = self.aircraft.aim
-            self._tell(mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT)
-            self._tell(mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT)
-
-    def _tell(self, message_id: int) -> None:
-        message = self.telemetry.message(message_id)
-        if message is not None:
-            self.broadcast(message)
+        self._announcing.reached(seq, self.aircraft.clock)
