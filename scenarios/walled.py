@@ -18,7 +18,9 @@ Ints = NDArray[np.intp]
 Place = tuple[float, float]
 
 SAGITTA = 0.5
-"""A circle to stay in is walled by chords that leave it by no more than this [m]."""
+"""A circle to stay in is walled by chords that leave it by no more than this [m] ..."""
+MOST_CHORDS = 720
+"""... or by so many: beyond a radius of 52 km they leave it by up to 10⁻⁵ of that."""
 BESIDE = 1e-3
 """Which side of an edge may be flown over is looked up this far beside it [m]."""
 
@@ -156,17 +158,26 @@ def _pieces(corners: Floats) -> list[Floats]:
 def _parting(area: FenceArea, allowing: Sequence[FenceArea]) -> list[Floats]:
     """Pieces of a polygon's sides that part what all areas to stay in hold from what none does."""
     others = [other for other in allowing if other is not area]
-    kept = []
-    for begin, end in _pieces(np.array(area.corners)):
-        step = end - begin
-        shares = sorted({0.0, 1.0, *(s for other in others for s in other.crossings(begin, step))})
-        beside = BESIDE / float(_off(step)) * np.array((-step[1], step[0]))
-        for low, high in pairwise(shares):
-            middle = begin + 0.5 * (low + high) * step
-            sides = np.stack((middle + beside, middle - beside))
-            if not np.any([one.holds(sides) for one in allowing], axis=0).all():
-                kept.append(np.stack((begin + low * step, begin + high * step)))
-    return kept
+    pieces = _pieces(np.array(area.corners))
+    if not (others and pieces):
+        return pieces
+    cut = np.array([part for piece in pieces for part in _cut_up(piece, others)])
+    step = cut[:, 1] - cut[:, 0]
+    length = _off(step)
+    cut, step, length = cut[length > BESIDE], step[length > BESIDE], length[length > BESIDE]
+    beside = BESIDE / length[:, None] * np.column_stack((-step[:, 1], step[:, 0]))
+    middle = cut.mean(axis=1)
+    one, other = (
+        np.any([each.holds(side) for each in allowing], axis=0) for side in (middle + beside, middle - beside)
+    )
+    return list(cut[~(one & other)])
+
+
+def _cut_up(piece: Floats, others: Sequence[FenceArea]) -> list[Floats]:
+    """A side of a polygon, cut where edges of other areas cross it."""
+    begin, step = piece[0], piece[1] - piece[0]
+    shares = sorted({0.0, 1.0, *(share for other in others for share in other.crossings(begin, step))})
+    return [np.stack((begin + low * step, begin + high * step)) for low, high in pairwise(shares)]
 
 
 def _outline(area: FenceArea) -> Floats:
@@ -174,7 +185,7 @@ def _outline(area: FenceArea) -> Floats:
     if area.centre is None or area.radius is None:
         return np.array(area.corners, dtype=np.float64)
     share = max(1.0 - SAGITTA / area.radius, 0.5)
-    count = max(8, math.ceil(math.pi / math.acos(share)))
+    count = min(max(8, math.ceil(math.pi / math.acos(share))), MOST_CHORDS)
     angles = math.tau / count * np.arange(count)
     ring: Floats = area.centre + area.radius * np.column_stack((np.cos(angles), np.sin(angles)))
     return ring

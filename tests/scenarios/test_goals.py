@@ -173,6 +173,22 @@ def test_a_round_field_keeps_its_waypoints_within_half_a_metre() -> None:
     assert math.hypot(*point) == pytest.approx(9000.0 - 134.0, abs=0.51)
 
 
+def test_a_round_field_of_any_size_has_walls_that_can_be_counted() -> None:
+    """They leave the circle by no more than a hundred-thousandth of its radius."""
+    field = [FenceArea(True, centre=(0.0, 0.0), radius=1e6)]
+    assert len(fence_shapes(field, 50.0)) == 720
+    assert math.hypot(*moved(field, (1e6 + 500.0, 0.0), [])) == pytest.approx(1e6 - 134.0, abs=10.0)
+
+
+def test_what_rounding_cuts_off_an_edge_is_no_wall() -> None:
+    """A corner of one area lies on a corner of the other, but for rounding."""
+    halves = [rectangle(0.0, 0.0, 1000.0, 1000.0), rectangle(1e-10, -1000.0, 500.0, 500.0)]
+    walls = fence_shapes(halves, 5.0)
+    length = np.hypot(*(walls.ends - walls.starts).T)
+    assert length.min() > 1.0
+    assert length.sum() == pytest.approx(6500.0)
+
+
 def test_areas_that_overlap_are_one_field() -> None:
     """The edge of one that runs inside another is no wall, nor where they share it."""
     for south in (-500.0, 0.0):
