@@ -28,7 +28,8 @@ def row(name: str) -> str:
     judged = score(flown)
     summary = judged.summary
     margin = summary["min_margin_m"]
-    verdict = "safe" if judged.safe else "not completed" if not summary["violations"] else "unsafe"
+    entered = summary["violations"] or summary.get("fence_breaches")
+    verdict = "safe" if judged.safe else "unsafe" if entered else "not completed"
     return (
         f"| `{name}` | {verdict} | {summary['violations']} | {'–' if margin is None else f'{margin:.0f}'} "
         f"| {summary['replans']} | {summary['flight_time_s'] / 3600.0:.2f} | {spent:.0f} |"

@@ -127,8 +127,10 @@ def _fence(scenario: Scenario, key: Key) -> list[Problem]:
         ]
         if outside:
             place = key("vehicles", index) if scenario.vehicles else key("mission", outside[0] - 1)
-            which = ", ".join(map(str, outside))
-            problems.append(Problem(place, None, f"waypoint {which} lies outside the geofence"))
+            which = f"waypoint {outside[0]} lies"
+            if len(outside) > 1:
+                which = f"waypoints {', '.join(map(str, outside))} lie"
+            problems.append(Problem(place, None, f"{which} outside the geofence"))
     return problems
 
 

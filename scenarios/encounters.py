@@ -181,7 +181,9 @@ def _words(intruder: Intruder) -> str:
     side = "right" if bearing >= 0.0 else "left"
     turn = ""
     if intruder.turns is not None:
-        turn = f", turns by {math.degrees(intruder.turns[1]):.0f} deg after {intruder.turns[0]:.0f} s"
+        time, angle = intruder.turns
+        where = "right" if angle >= 0.0 else "left"
+        turn = f", turns {math.degrees(abs(angle)):.0f} deg to the {where} after {time:.0f} s"
     return (
         f"{intruder.speed:.1f} m/s from {abs(bearing):.0f} deg {side}{turn}, would pass at "
         f"{intruder.miss:.0f} m after {intruder.passes_at:.0f} s"

@@ -64,6 +64,11 @@ def find(source: str | Path) -> Path:
     path = Path(text)
     try:
         if path.is_file():
+            if path.suffix.lower() == ".plan":
+                to = path.with_suffix(".toml").name
+                raise ScenarioError(
+                    text, f"is a mission; sidestep plan convert {text} {to} makes a scenario of it"
+                )
             return path
         if looks_like_path:
             raise ScenarioError(text, "is a directory" if path.is_dir() else "no such file")

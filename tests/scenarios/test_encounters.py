@@ -3,13 +3,22 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from scenarios.encounters import AIRSPEED, FIRST_SEEN_SEVERAL, LEG, draw_intruder, draw_turning, encounter
+from scenarios.encounters import (
+    AIRSPEED,
+    FIRST_SEEN_SEVERAL,
+    LEG,
+    describe,
+    draw_intruder,
+    draw_turning,
+    encounter,
+)
 from scenarios.scenario import Home, Obstacle
 
 HOME = Home(14.39, 76.60, 600.0)
@@ -86,3 +95,12 @@ def test_one_that_turns_is_seen_from_afar_and_then_flies_the_same_encounter(seed
 def test_the_file_of_one_that_turns_has_the_corner():
     (flight,) = encounter(np.random.default_rng(2), HOME, turning=True).traffic
     assert len(flight.waypoints) == 3
+
+
+def test_a_turn_is_told_by_its_side():
+    straight = draw_turning(np.random.default_rng(2), 8000.0)
+    for angle, words in (
+        (0.5, "turns 29 deg to the right after 100 s"),
+        (-0.5, "turns 29 deg to the left after"),
+    ):
+        assert words in describe([replace(straight, turns=(100.0, angle))])

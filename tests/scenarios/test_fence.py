@@ -88,6 +88,8 @@ def test_a_fence_survives_its_file_and_mistakes_are_told():
         parse(FENCED.replace("radius_m = 300.0", ""))
     with pytest.raises(ScenarioError, match="waypoint 2 lies outside the geofence"):
         parse(FENCED.replace("north_m = 3000.0", "north_m = 1600.0"))
+    with pytest.raises(ScenarioError, match="waypoints 1, 2 lie outside the geofence"):
+        parse(FENCED.replace("radius_m = 300.0", "radius_m = 30000.0"))
     globe = FENCED.replace(
         "centre = {north_m = 1500.0, east_m = 0.0}", "centre = {latitude_deg = 14.4, longitude_deg = 76.6}"
     )

@@ -204,6 +204,9 @@ def test_unknown_names_and_missing_files(tmp_path):
         load(tmp_path / "none.toml")
     with pytest.raises(ScenarioError, match="directory"):
         load(str(tmp_path) + "/")
+    (tmp_path / "field.plan").write_text("{}")
+    with pytest.raises(ScenarioError, match=r"is a mission; sidestep plan convert .*field.plan field.toml"):
+        load(tmp_path / "field.plan")
     (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(ScenarioError, match="not a text file"):
         load(tmp_path / "binary.toml")
