@@ -27,6 +27,7 @@ WAYPOINT = "#00795c"
 DECISION = "#a0427f"
 TRAFFIC = "#111111"
 FENCE = "#8a6d00"
+RALLY = "#117733"
 TINT = "rgba(213,94,0,.16)"
 FONT = {"family": "system-ui, sans-serif", "size": 13, "color": "#1d2530"}
 GRID = "#e3e7ec"

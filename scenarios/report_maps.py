@@ -17,6 +17,7 @@ from scenarios.report_figures import (
     FLOWN,
     FONT,
     MISSION,
+    RALLY,
     SPHERE,
     TINT,
     TRAFFIC,
@@ -39,6 +40,7 @@ def top_view(run: Run) -> Figure:
         *_spheres(_placed(run)),
         *_traffic(run, None),
         *_fence(run),
+        *_rally(run),
         *_mission(run),
         *_flown(run, None, 5.0),
         _waypoints(run.decisions),
@@ -93,6 +95,9 @@ def map_key(run: Run) -> str:
     if run.scenario.geofence:
         text = "The geofence: stay inside (solid), stay out (dashed)."
         signs.append((line(FENCE, 2.5), text))
+    if run.scenario.rally:
+        sign = f'<path d="M22 1 L29 13 L15 13 Z" fill="none" stroke="{RALLY}" stroke-width="2"/>'
+        signs.append((sign, "A rally point (R1, R2 …): where to wait if no way is free."))
     if any(hazard.moving for hazard in run.hazards):
         text = "The path of traffic; its sphere is drawn where it was at the closest pass."
         signs.append((line(TRAFFIC, 2, "2 3"), text))
@@ -122,6 +127,7 @@ def encounter_view(run: Run, encounter: Encounter) -> Figure:
         *_spheres(spheres),
         *_traffic(run, (low, high)),
         *_fence(run),
+        *_rally(run),
         *_mission(run),
         *_flown(run, (low, high), 0.5),
         *(_dimension(p) for p in encounter.passes),
@@ -149,6 +155,17 @@ def _fence(run: Run) -> list[Trace]:
             name = "Geofence, stay inside" if include else "Geofence, stay out"
             found.append(_map_line(name, parts, "geofence", color=FENCE, width=2.5, dash=dash))
     return found
+
+
+def _rally(run: Run) -> list[Trace]:
+    """The rally points, numbered as the decisions name them."""
+    points = np.array([(point.north, point.east) for point in run.scenario.rally]).reshape(-1, 2)
+    if not len(points):
+        return []
+    labels = [f"R{i}" for i in range(1, len(points) + 1)]
+    look = {"symbol": "triangle-up-open", "size": 11, "color": RALLY, "line": {"width": 2}}
+    marks = _map_marks("Rally points", points, "rally", look, labels)
+    return [marks | {"mode": "markers+text", "text": labels, "textposition": "middle right"}]
 
 
 def _traffic(run: Run, window: tuple[Floats, Floats] | None) -> list[Trace]:

@@ -112,6 +112,17 @@ def test_obstacle_that_never_appeared_is_on_the_map_only(tmp_path):
     assert "appears at 99,999 s" in page
 
 
+def test_rally_points_are_drawn_with_the_numbers_that_decisions_give_them(tmp_path):
+    directory = write_run(tmp_path)
+    with (directory / "scenario.toml").open("a", encoding="utf-8") as file:
+        file.writelines(f"\n[[rally]]\nnorth_m = {north}\neast_m = 500.0\n" for north in (4000.0, 9000.0))
+    page = page_of(directory)
+    drawn = trace(json_of(page, "plots")["top-view"], "rally")
+    assert (drawn["text"], drawn["x"], drawn["y"]) == (["R1", "R2"], [0.5, 0.5], [4.0, 9.0])
+    assert "where to wait if no way is free" in words_of(page)
+    assert "where to wait" not in words_of(page_of(write_run(tmp_path / "none")))
+
+
 def test_traffic_is_met_where_it_was(tmp_path):
     run = read(write_run(tmp_path, obstacles=(), detour=False, traffic=True))
     (meeting,) = passes(run)
