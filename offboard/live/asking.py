@@ -28,6 +28,11 @@ class Asking:
         self._pump = pump
         self._waited: dict[int, Reply | None] = {}
 
+    @property
+    def waiting(self) -> bool:
+        """True while an answer is waited for."""
+        return bool(self._waited)
+
     def on_reply(self, reply: Reply) -> None:
         """Take over an answer; those that nobody waits for are left alone."""
         if reply.token in self._waited:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 from avoidance import Waypoint
@@ -51,6 +52,8 @@ class Editor:
         self.on_board: OnBoard | None = None
         self.status = EditStatus.IDLE
         self.records: list[EditRecord] = []
+        self.ended = -math.inf
+        """When the last edit came to its end, whatever became of it [s, wall clock]."""
         self._aboard = aboard
         self._watch = watch
         self._raw: RawMission | None = None
@@ -250,6 +253,7 @@ class Editor:
         if run is None:
             return
         self.records.append(run.record(self._begun, status))
+        self.ended = self._aboard.session.wall()
         self.status = status
         self._run = None
 

@@ -13,6 +13,8 @@ from offboard.live.messages import Ask, Reply
 from offboard.mission_list import MissionList
 from offboard.raw_mission import TAKE_OFFS, Composed, RawItem, RawMission, compose
 
+JUST_NOW = 2.0
+"""What is said of a mission this soon after ours is said of ours [s, wall clock]."""
 ASK_AGAIN = 3.0
 """A mission that could not be had is asked for again after this time [s, wall clock]."""
 
@@ -45,6 +47,7 @@ class Loading:
         self._begun = begun
         self._download = -1
         self._ask_at = math.inf
+        self._uploaded = -math.inf
 
     def upload(self, raw: RawMission) -> None:
         """Replace the whole mission, whatever is in it.
@@ -65,6 +68,7 @@ class Loading:
         wire = rules.wire(composed.items, aboard.home)
         token = aboard.session.upload(wire, rules.first_item)
         self._request(token, f"take the mission of {len(wire)} items")
+        self._uploaded = aboard.session.wall()
         self._take(raw, mission, composed)
 
     def adopt(self) -> None:
@@ -80,6 +84,12 @@ class Loading:
     def look_again(self) -> None:
         """The mission may be another one: it is asked for at the next opportunity."""
         self._ask_at = self._aboard.session.wall()
+
+    def taken_aboard(self) -> None:
+        """The vehicle says that it has taken a mission: somebody else's, unless we have just sent one."""
+        ours = max(self._uploaded, self._editor.ended)
+        if not self._editor.sending and self._aboard.session.wall() - ours > JUST_NOW:
+            self.look_again()
 
     def follow(self, differs: bool) -> None:
         """Ask for the mission if it is not ours any more, or could not be had."""

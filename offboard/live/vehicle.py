@@ -270,8 +270,8 @@ class LiveVehicle:
             self.aboard.clock.heard(telemetry.fix.time, wall)
         for severity, text in telemetry.texts:
             self.aboard.tell("info" if severity > 4 else "warning", f"{self.aboard.rules.name}: {text}")
-            if text and text == self.aboard.rules.mission_taken and not self.editor.sending:
-                self._loading.look_again()
+            if text and text == self.aboard.rules.mission_taken:
+                self._loading.taken_aboard()
         telemetry.texts.clear()
         for seen in self.watch.look(telemetry, self.time, wall):
             self._on_seen(seen)
@@ -315,7 +315,9 @@ class LiveVehicle:
             self.finished_at = self.time
             self.aboard.tell("info", "the last waypoint has been reached")
         differs = not self.watch.lost and self.editor.differs()
-        self._loading.follow(self.watch.mission_differs(differs, wall))
+        differs = self.watch.mission_differs(differs, wall)
+        if not self._asking.waiting:  # MAVSDK does one list at a time
+            self._loading.follow(differs)
 
     def _on_reply(self, reply: Reply) -> None:
         self._asking.on_reply(reply)

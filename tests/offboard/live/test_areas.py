@@ -51,6 +51,18 @@ def test_what_is_put_aboard_is_what_is_there(autopilot):
         assert [e for e in vehicle.aboard.events if e.severity != "info"] == []
 
 
+@pytest.mark.parametrize("autopilot", ["px4", "ardupilot"])
+def test_they_can_be_had_right_after_a_mission_was_put_aboard(autopilot):
+    """MAVSDK does one list at a time: looking at our own mission again would be in the way."""
+    with waiting(autopilot) as (_, vehicle):
+        put_fence(vehicle, FENCE)
+        vehicle.upload_raw(RawMission.of_plan(mission_plan(SMALL.mission, vehicle.aboard.frame)))
+        for _ in range(3):
+            assert fence_aboard(vehicle) == FENCE
+            vehicle.wait_until(vehicle.time + 0.4)
+        assert [e.text for e in vehicle.aboard.events if e.severity != "info"] == []
+
+
 def test_areas_that_lie_nowhere_near_are_not_taken_for_ours():
     with waiting("px4") as (_, vehicle):
         opposite = -14.4, 76.6 - 180.0
