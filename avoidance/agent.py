@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from avoidance.conflicts import first_conflict, to_be_avoided
-from avoidance.contingency import first_trap
+from avoidance.contingency import first_trap, orbit_on_arrival
 from avoidance.escape import Escape
 from avoidance.geofence import OPEN, Geofence
 from avoidance.holding import NoWay, Vigil, no_room_yet, skipped
@@ -43,7 +43,9 @@ CLEAR = Keep(why="the route is clear")
 RETRY = 3.0
 """While holding, or while a later leg is blocked, a way is looked for again after this time [s]."""
 LATER = 2000.0
-"""A later leg that is blocked further ahead than this does not stop the vehicle yet [m]."""
+"""A later leg that is blocked further ahead than this does not stop the vehicle yet [m] ..."""
+STEADY = 500.0
+"""... and does not end a hold unless it is so much further, for its distance changes on an orbit [m]."""
 
 
 class Agent:
@@ -191,7 +193,7 @@ class Agent:
             self._vigil.end()
             return way
         if gap.target.item is not None and not blocked.threat.moving:
-            walled_in = self._move(gap)
+            walled_in = self._move(gap, gap.end)
             if walled_in is not None:
                 return walled_in
         self._no_way = self._no_way.again(own, route, self._version)
@@ -203,10 +205,27 @@ class Agent:
         self._retry_at = gap.own.time + RETRY
         if self._vigil.under_way and self._vigil.cut_off(gap):
             return self._hold(gap)
-        if threat.moving or (gap.begin > 0 and threat.distance > LATER):
-            words = f"{threat_words(threat)}; no way round is known yet"
+        if not (threat.moving or self._can_fly_on(gap)):
+            return self._wait(gap)
+        words = f"{threat_words(threat)}; no way round is known yet"
+        if threat.moving or not self._vigil.under_way:
             return Keep(why=words, threat=threat, rung=Rung.ORBIT)
-        return self._wait(gap)
+        self._vigil.end()
+        return Resume(why=words, threat=threat, rung=Rung.ORBIT, route=gap.route.waypoints)
+
+    def _can_fly_on(self, gap: Gap) -> bool:
+        """True if it is time enough to wait at the waypoint from where no way on is known.
+
+        More may be seen from there, and a circle can be left in any direction.
+        """
+        before = gap.problem.before
+        if before is None:
+            return False
+        later = LATER + STEADY if self._vigil.under_way else LATER
+        waypoint = gap.route.waypoints[gap.begin - 1]
+        return gap.blocked.threat.distance > later or orbit_on_arrival(
+            before, waypoint, gap.known, self._performance
+        )
 
     def _choose_again(self, own: Ownship, route: Route, known: Known) -> Decision | None:
         """Another waypoint that meets every constraint, where one put in no longer does."""
@@ -237,20 +256,23 @@ class Agent:
         self._sides.chosen(gap.problem, hill, gap.taken(way))
         return replace(way, why=end_words(hill.threat, way))
 
-    def _move(self, gap: Gap) -> Decision | None:
-        """Another stand-in for the waypoint that no way leads to."""
-        circles = gap.known.circles(gap.target.altitude, gap.target.altitude)
-        return self._replacements.move(gap.own, gap.route, circles, gap.end, ())
+    def _move(self, gap: Gap, index: int) -> Decision | None:
+        """Another stand-in for a waypoint that no way leads to, or out of."""
+        altitude = gap.route.waypoints[index].altitude
+        circles = gap.known.circles(altitude, altitude)
+        return self._replacements.move(gap.own, gap.route, circles, index, ())
 
     def _wait(self, gap: Gap) -> Decision:
         """Hold in free space, or fly on until there is room to; after a while give the waypoint up."""
         if not self._vigil.under_way:
             return self._hold(gap)
-        if not self._vigil.tired(gap.own) or gap.target.item is None:
+        index = gap.begin - 1 if gap.begin else gap.end  # what nothing leads out of, or nothing into
+        waypoint = gap.route.waypoints[index]
+        if not self._vigil.tired(gap.own) or waypoint.item is None:
             return self._vigil.words(gap)
         self._vigil.end()
-        moved = self._move(gap) if self._replacements.ask_for_wide_ways(gap.target) else None
-        return skipped(gap.route, gap.blocked, gap.end) if moved is None else moved
+        moved = self._move(gap, index) if self._replacements.ask_for_wide_ways(waypoint) else None
+        return skipped(gap.route, gap.blocked, index) if moved is None else moved
 
     def _hold(self, gap: Gap) -> Decision:
         """Wait at a rally point that can be reached, else here as soon as there is room to."""

@@ -19,7 +19,7 @@ from avoidance.geometry import segments_clearance
 from avoidance.known import Circles, Known
 from avoidance.parameters import Parameters
 from avoidance.route_check import Blocked, altitude_bands, remaining_points
-from avoidance.types import Bools, Floats, Ints, Ownship, Performance, Route, Threat
+from avoidance.types import Bools, Floats, Ints, Ownship, Performance, Route, Threat, Waypoint
 
 WIDE, TIGHT = 1.5, 1.2
 """Radii of a holding orbit in turn radii: the one preferred, and the smallest flown."""
@@ -77,6 +77,27 @@ def orbit_from_here(own: Ownship, known: Known, performance: Performance) -> Orb
     """
     wide, tight = (_freer_side(own, known, performance, radii) for radii in (WIDE, TIGHT))
     return wide if wide.clearance >= 0.0 else tight
+
+
+def orbit_on_arrival(
+    before: tuple[float, float], waypoint: Waypoint, known: Known, performance: Performance
+) -> bool:
+    """True if an orbit can be begun wherever the arrival at a waypoint is noticed and acted upon.
+
+    The vehicle comes straight from `before` [m].
+    """
+    begin, there = np.array(before), np.array([waypoint.north, waypoint.east])
+    unit = (there - begin) / max(math.dist(before, there), 1e-9)
+    late = performance.airspeed * (SEQUENCING_DELAY + max(1.0, performance.edit_time))
+    along = np.linspace(
+        -performance.acceptance_radius, late, 1 + math.ceil((late + performance.acceptance_radius) / SPACING)
+    )
+    course = np.array([math.atan2(unit[1], unit[0])])
+    centres = _centres(there + along[:, None] * unit, course, performance, TIGHT).reshape(-1, 2)
+    circles = known.circles(waypoint.altitude, waypoint.altitude)
+    clearance = _clearance(centres, circles, known.walls).reshape(-1, 2)
+    needed = orbit_reach(performance) + 2.0 * performance.tracking_error
+    return bool((clearance >= needed).any(axis=1).all())
 
 
 def _freer_side(own: Ownship, known: Known, performance: Performance, radii: float) -> Orbit:
@@ -331,6 +352,7 @@ __all__ = [
     "first_trap",
     "longest_stretch",
     "orbit_from_here",
+    "orbit_on_arrival",
     "orbit_reach",
     "room_outside",
     "turning_room",

@@ -138,13 +138,17 @@ def hold_on(own: Ownship, orbit: Orbit, blocked: Blocked) -> Hold:
     )
 
 
-def skipped(route: Route, blocked: Blocked, end: int) -> Replace:
-    """Give up mission item route.waypoints[end], that no route leads to."""
+def skipped(route: Route, blocked: Blocked, index: int) -> Replace:
+    """Give up mission item route.waypoints[index], that no route leads to, or from there on to the next."""
+    before = route.waypoints[:index]
+    while before and before[-1].item is None:
+        before = before[:-1]  # a detour towards it has lost its purpose
+    onward = "to" if blocked.leg <= index else "on from"
     return Replace(
-        why=f"{threat_words(blocked.threat)}; no route to waypoint "
-        f"{(route.waypoints[end].item or 0) + 1} can be flown, so it is skipped",
+        why=f"{threat_words(blocked.threat)}; no route {onward} waypoint "
+        f"{(route.waypoints[index].item or 0) + 1} can be flown, so it is skipped",
         threat=blocked.threat,
         rung=Rung.ORBIT,
-        route=route.waypoints[end + 1 :],
+        route=(*before, *route.waypoints[index + 1 :]),
         waypoint=None,
     )

@@ -12,6 +12,7 @@ from avoidance.contingency import (
     first_trap,
     longest_stretch,
     orbit_from_here,
+    orbit_on_arrival,
     orbit_reach,
     room_outside,
     turning_room,
@@ -93,6 +94,13 @@ def test_beside_a_sphere_an_orbit_is_free_on_the_other_side_as_soon_as_there_is_
     own = ownship(round_it[0][0] - 500.0 * np.cos(course), round_it[0][1] + 500.0 * np.sin(course))
     way = route(*round_it)
     assert (first_trap(own, way, seen([(0.0, 0.0)], own, way), PERFORMANCE, DEFAULT) is not None) == trap
+
+
+@pytest.mark.parametrize(("half_width", "room"), [(60.0, False), (250.0, True)])
+def test_an_orbit_on_arrival_needs_room_on_one_side(half_width: float, room: bool) -> None:
+    own, way = ownship(), route((6000.0, 0.0))
+    around = seen(corridor(half_width), own, way)
+    assert orbit_on_arrival((0.0, 0.0), way.waypoints[0], around, PERFORMANCE) == room
 
 
 def test_no_trap_without_the_promise() -> None:

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from avoidance import Contact, Ownship, Performance, RadarScan, Route, Waypoint
+import numpy as np
+import pytest
+
+from avoidance import Contact, Ownship, Performance, RadarScan, Route, Threat, Waypoint
 from avoidance.agent import Agent
-from avoidance.holding import FIRST_WAIT, LONGEST_WAIT, NoWay
+from avoidance.holding import FIRST_WAIT, LONGEST_WAIT, NoWay, skipped
 from avoidance.parameters import DEFAULT, PAPER
+from avoidance.route_check import Blocked
 
 ROUTE = Route(Waypoint(0.0, 0.0, 200.0), (Waypoint(9000.0, 0.0, 200.0, item=0),))
 
@@ -80,3 +84,43 @@ def test_whoever_comes_to_hold_later_than_no_way_was_found_asks_again() -> None:
     assert held is not None
     assert held > 20.0
     assert len(asked) > before + 5
+
+
+@pytest.mark.parametrize(("index", "left"), [(1, [(9000.0, 0.0)]), (3, [(4000.0, 0.0)])])
+def test_whoever_gives_up_a_waypoint_keeps_the_others(index: int, left: list[tuple[float, float]]) -> None:
+    places = [(2000.0, None), (4000.0, 0), (6000.0, None), (9000.0, 1)]
+    legs = tuple(Waypoint(north, 0.0, 200.0, item=item) for north, item in places)
+    blocked = Blocked(Threat((7,), 3, 6000.0, 400.0, 300.0, 1025.0), 3, np.array([0]))
+    decision = skipped(Route(ROUTE.origin, legs), blocked, index)
+    kept = [(w.north, w.east) for w in decision.route or () if w.item is not None]
+    assert kept == left
+    assert ("no route on from waypoint 1" if index == 1 else "no route to waypoint 2") in decision.why
+
+
+def test_with_room_for_a_circle_at_a_waypoint_the_vehicle_flies_there_though_nothing_leads_on() -> None:
+    legs = (Waypoint(4000.0, 0.0, 200.0, item=0), Waypoint(40_000.0, 0.0, 200.0, item=1))
+    route, ahead = Route(ROUTE.origin, legs), [Contact(1, 5500.0, 0.0, 200.0)]
+    agent, passed = Agent(ALONE, way=lambda problem, _: None), Route(ROUTE.origin, legs[1:])
+    for t in map(float, range(300)):
+        decision = agent.decide(at(t), passed if 15.0 * t > 3900.0 else route, RadarScan.of(t, ahead))
+        if decision.name == "hold":
+            break
+    assert 3900.0 < 15.0 * t < 4200.0
+
+
+def test_a_hold_ends_when_only_a_later_leg_far_ahead_is_blocked() -> None:
+    agent, seen = Agent(ALONE, way=lambda problem, _: None), [Contact(2, 300.0, 9000.0, 200.0)]
+    ahead = Route(ROUTE.origin, (Waypoint(300.0, 40_000.0, 200.0, item=0),))
+    legs = Waypoint(4000.0, 0.0, 200.0, item=0), Waypoint(-7100.0, 27_000.0, 200.0, item=1)
+    around = Route(ROUTE.origin, legs)  # the second leg leads into the sphere
+    said = []
+    for t in map(float, range(900)):
+        own = Ownship(t, 300.0, min(15.0 * t, 7000.0), 200.0, 0.0, 15.0, airspeed=15.0)
+        route = ahead if "hold" not in said[:-5] else around
+        decision = agent.decide(own, route, RadarScan.of(t, seen))
+        said.append(decision.name)
+        if said[-1] in ("resume", "replace"):
+            break
+    assert "hold" in said
+    assert said[-1] == "resume"
+    assert "no way round is known yet" in decision.why
