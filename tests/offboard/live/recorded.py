@@ -73,6 +73,7 @@ class Recorded:
         self._at = len(known)
         self.items = list(self._uploads[self._next - 1].items) if self._next else []
         self.sent = [upload.sent for upload in self._uploads]
+        self._steps = 0
         self._shift, self._more, self._from = 0, 0, 10**6
         self._incoming: list = []
         self._wanted = 0
@@ -90,6 +91,9 @@ class Recorded:
     def step(self, duration: float) -> None:
         gate = self._gate()
         self.time = self.time + duration if gate is None else min(self.time + duration, gate)
+        self._steps += 1
+        if self._steps % 5 == 0:  # as often as it is asked for: the recordings have it at the beginning only
+            self._out += self._first.get("HOME_POSITION", b"")
         if not self._gates and self._next < len(self._uploads):
             upload = self._uploads[self._next]
             if self.time >= upload.acknowledged:
@@ -144,8 +148,6 @@ class Recorded:
         accepted = mavlink.MAV_RESULT_ACCEPTED
         ack = mavlink.MAVLink_command_ack_message(message.command, accepted, 0, 0, *self._partner)
         self._out += self._codec.pack(ack)
-        if message.command == 511 and message.param1 == mavlink.MAVLINK_MSG_ID_HOME_POSITION:
-            self._out += self._first.get("HOME_POSITION", b"")
 
     def _on_mission_request_list(self, message: object) -> None:
         count = len(self.items) if message.mission_type == 0 else 0
