@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
-import signal
 import sys
-from collections.abc import Iterator
 from pathlib import Path
-from types import FrameType
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -24,6 +20,7 @@ from scenarios import (
     sitl_commands,
 )
 from scenarios.command_errors import INTERRUPTED, OK, UNSAFE, expected_errors
+from scenarios.interrupts import stop_on_interrupt
 
 if TYPE_CHECKING:
     from avoidance.parameters import Parameters
@@ -265,25 +262,6 @@ def _fly_and_write(
     if flown.ending == "interrupted":
         return INTERRUPTED
     return OK if judged.safe else UNSAFE
-
-
-@contextlib.contextmanager
-def stop_on_interrupt() -> Iterator[list[int]]:
-    """The first Ctrl-C or SIGTERM is only noted (the list is not empty then), the next stops hard."""
-    stop: list[int] = []
-    both = (signal.SIGINT, signal.SIGTERM)
-
-    def note(number: int, frame: FrameType | None) -> None:  # noqa: ARG001
-        stop.append(number)
-        for each in both:
-            signal.signal(each, signal.default_int_handler)
-
-    before = [signal.signal(each, note) for each in both]
-    try:
-        yield stop
-    finally:
-        for each, handler in zip(both, before, strict=True):
-            signal.signal(each, handler)
 
 
 if __name__ == "__main__":

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import json
-import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
 import typer
@@ -21,12 +19,13 @@ from offboard.hil.errors import LinkLost
 from offboard.hil.json_bridge import JsonBridge
 from offboard.hil.pipes import SerialPipe, TcpServer, UdpLinks, UdpPort, parse_links
 from offboard.hil.px4_bridge import Px4Bridge
-from scenarios.command_errors import INTERRUPTED, OK, UNSAFE
+from scenarios.command_errors import FAILED, INTERRUPTED, OK, UNSAFE
 from scenarios.hil_avoidance import PREFIX, Together, end
 from scenarios.hil_priority import real_time
 from scenarios.hil_record import HilRecorder, check_directory
 from scenarios.hil_setup import HilOptions, Rig
 from scenarios.hil_show import Status, punctuality_json
+from scenarios.interrupts import stop_on_interrupt
 
 _EVERY = 64
 """Steps from one look at the clock to the next."""
@@ -100,6 +99,7 @@ def _serve(rig: Rig, bridge: JsonBridge | Px4Bridge, steps: Iterator[bool], cour
     together = course.together
     status = Status(rig.simulation, quiet=course.as_json or together is not None)
     lost = ""
+    before = None if together is None else _state(together.directory)
     companion = None if together is None else together.begin()
     with stop_on_interrupt() as stop:
         try:
@@ -113,17 +113,31 @@ def _serve(rig: Rig, bridge: JsonBridge | Px4Bridge, steps: Iterator[bool], cour
     summary = recorder.summary(bridge.counts) | {"ending": ending}
     if isinstance(bridge, Px4Bridge) and bridge.metronome.punctuality.steps:
         summary["real_time"] = punctuality_json(bridge.metronome.punctuality)
-    if together is not None and together.directory.is_dir():
+    where = course.output
+    if together is not None and (where := _written(together.directory, before)) is not None:
         summary |= together.truth(recorder.rows)
-        recorder.write(together.directory, summary, PREFIX)
-    elif together is None and course.output is not None:
-        recorder.write(course.output, summary)
-    _tell(summary, course)
+        recorder.write(where, summary, PREFIX)
+    elif where is not None:
+        recorder.write(where, summary)
+    _tell(summary, course, where)
     if lost:
         raise LinkError(lost)
     if code == OK and summary.get("violations"):
         code = UNSAFE  # by the plant's own track
-    raise typer.Exit(INTERRUPTED if stop else code)
+    raise typer.Exit(INTERRUPTED if stop else code if code >= 0 else FAILED)  # below 0: killed
+
+
+def _state(directory: Path) -> tuple[int, int] | None:
+    """Which directory it is; None if it is none."""
+    if not directory.is_dir():
+        return None
+    found = directory.stat()
+    return found.st_ino, found.st_mtime_ns
+
+
+def _written(directory: Path, before: tuple[int, int] | None) -> Path | None:
+    """Where the other process has written its run; None if it has not, though an earlier one may be there."""
+    return None if _state(directory) in (None, before) else directory
 
 
 def _loop(
@@ -165,7 +179,7 @@ def _extra(bridge: JsonBridge | Px4Bridge) -> str:
     return ", ".join(words)
 
 
-def _tell(summary: dict[str, Any], course: Course) -> None:
+def _tell(summary: dict[str, Any], course: Course, where: Path | None) -> None:
     if course.as_json:
         if course.together is None:  # else the other process has printed the run's own summary
             sys.stdout.write(json.dumps(summary, indent=2) + "\n")
@@ -182,27 +196,9 @@ def _tell(summary: dict[str, Any], course: Course) -> None:
         typer.echo(
             f"by the plant's own track: nearest {summary['min_separation_m']:.1f} m, least margin "
             f"{summary['min_margin_m']:.1f} m, spheres entered {summary['violations']}"
-            + ("" if summary["judged"] == "all" else " (of what stands still alone)")
+            + ("" if summary["judged"] == "all" else " (of what always stood there alone)")
         )
-    where = course.output if course.together is None else course.together.directory
-    if where is not None and where.is_dir():
+    if where is not None:
         typer.echo(f"written to {where}")
-
-
-@contextlib.contextmanager
-def stop_on_interrupt() -> Iterator[list[int]]:
-    """The first Ctrl-C (or SIGTERM) only notes that it came: the list is then not empty; the second stops."""
-    stop: list[int] = []
-    before: dict[int, Callable[[int, FrameType | None], Any] | int | None] = {}
-
-    def note(number: int, frame: FrameType | None) -> None:  # noqa: ARG001
-        stop.append(number)
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-
-    for each in (signal.SIGINT, signal.SIGTERM):
-        before[each] = signal.signal(each, note)
-    try:
-        yield stop
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+    elif course.together is not None:
+        typer.echo("the other process has written no run, and nothing is kept of the plant's track")

@@ -89,8 +89,9 @@ def truth(scenario: Scenario, rows: Sequence[Sequence[Any]], directory: Path) ->
     -------
     dict
         `min_separation_m`, `min_margin_m`, `violations`: None where nothing is known. `judged`: `all`;
-        `standing` if there was traffic and the clocks could not be compared; `nothing`. `clock_fit_m`: how
-        far apart the two tracks of the flight lie, None if they were not compared.
+        `standing`, what always stood there, if there was traffic or something that appears and the clocks
+        could not be compared; `nothing`. `clock_fit_m`: how far apart the two tracks of the flight lie, None
+        if they were not compared.
     """
     track = _track(rows)
     if track is None:
@@ -98,8 +99,9 @@ def truth(scenario: Scenario, rows: Sequence[Sequence[Any]], directory: Path) ->
     run = _run(directory)
     fit = None if run is None else ClockFit.of(track, run.track)
     if run is None or fit is None or fit.apart > FIT:
-        complete = not scenario.traffic and not any(each.appears_at for each in scenario.obstacles)
-        found = separations(track, scenario.obstacles)
+        always = [each for each in scenario.obstacles if each.appears_at <= 0.0]
+        complete = not scenario.traffic and len(always) == len(scenario.obstacles)
+        found = separations(track, always)
         return _summary(found, "all" if complete else "standing", None if fit is None else fit.apart)
     standing = [
         replace(each, appears_at=each.appears_at + fit.offset) if each.appears_at > 0.0 else each

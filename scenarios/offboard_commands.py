@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from scenarios.command_errors import FAILED, INTERRUPTED, OK, UNSAFE, expected_errors
+from scenarios.interrupts import stop_on_interrupt
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from avoidance.parameters import Parameters
     from offboard.live.vehicle import LiveVehicle
     from scenarios.live_areas import LiveAreas
@@ -145,10 +144,13 @@ def fly(
     made = source.make(vehicle, parameters)
     areas = _prepare(vehicle, wanted, source, arm=arm)
     scenario = areas.put_into(scenario_of(vehicle, source.scenario or wanted.scenario, wanted.name))
-    with contextlib.closing(LiveFlight(scenario, vehicle, made, parameters, wanted.seed)) as flight:
+    flight = LiveFlight(scenario, vehicle, made, parameters, wanted.seed)
+    with contextlib.closing(flight), stop_on_interrupt() as stop:
         with LiveStatus(vehicle, flight, source.text) as status:
-            for frame in _until_interrupted(flight):
+            for frame in flight:
                 status.update(frame)
+                if stop:
+                    break
         vehicle.aboard.listener = None
         return _write(flight, directory, as_json=as_json)
 
@@ -214,17 +216,6 @@ def _ask(question: str) -> None:
         )
     if not typer.confirm(question, err=True):
         raise ScenarioError("--arm", "nothing was sent, nothing was started")
-
-
-def _until_interrupted(flight: LiveFlight) -> Iterator[object]:
-    """The flight's frames, up to the first Ctrl-C."""
-    from scenarios.cli import stop_on_interrupt  # noqa: PLC0415
-
-    with stop_on_interrupt() as stop:
-        for frame in flight:
-            yield frame
-            if stop:
-                return
 
 
 def _write(flight: LiveFlight, directory: Path, *, as_json: bool) -> int:

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 
 from fmu.errors import PlantError
 from scenarios import __version__
-from scenarios.cli import app, stop_on_interrupt
+from scenarios.cli import app
 from scenarios.hangar import Hangar
 from scenarios.recorded import differences, read_run
 from scenarios.scenario import Wind
@@ -189,12 +189,3 @@ def test_help_needs_no_heavy_package():
         [sys.executable, "-c", program], cwd=ROOT, check=True, capture_output=True, text=True
     )
     assert done.stdout == "[]\n"
-
-
-def test_a_service_that_is_stopped_ends_as_by_ctrl_c():
-    with stop_on_interrupt() as stop:
-        signal.raise_signal(signal.SIGTERM)
-        assert stop == [signal.SIGTERM]
-        with pytest.raises(KeyboardInterrupt):
-            signal.raise_signal(signal.SIGTERM)
-    assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL

@@ -151,9 +151,26 @@ def test_nobody_is_left_behind_when_the_model_fails(tmp_path):
     assert other.process.returncode is not None
 
 
+@pytest.mark.parametrize(
+    ("code", "expected"), [("raise SystemExit(3)", 3), ("import os; os.kill(os.getpid(), 9)", 3)]
+)
+def test_an_earlier_run_is_not_taken_for_one_that_was_not_written(tmp_path, capsys, code, expected):
+    """The other process has failed, or was killed: what lies there is of the time before."""
+    other = Other(tmp_path, code, violations=1)
+    with (
+        Rig(HilOptions()) as rig,
+        contextlib.closing(UdpPort(0)) as port,
+        pytest.raises(typer.Exit) as ended,
+    ):
+        _serve(rig, rig.json_bridge(port), itertools.repeat(False), Course(together=other))
+    assert ended.value.exit_code == expected
+    assert not list(tmp_path.iterdir())
+    assert "has written no run" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(("violations", "code"), [(0, 0), (1, 1)])
 def test_a_sphere_entered_by_the_plants_own_track_is_no_safe_flight(tmp_path, violations, code):
-    other = Other(tmp_path, "pass", violations)
+    other = Other(tmp_path / "run", f"import os; os.mkdir({str(tmp_path / 'run')!r})", violations)
     with (
         Rig(HilOptions()) as rig,
         contextlib.closing(UdpPort(0)) as port,

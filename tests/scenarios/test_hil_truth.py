@@ -92,6 +92,14 @@ def test_what_stands_from_the_beginning_counts_before_the_run_begins(run, appear
     assert found["violations"] == violations
 
 
+def test_what_appears_by_a_clock_that_is_not_known_is_not_judged(run, tmp_path):
+    """By the plant's clock it would stand in the way already; by the autopilot's it appeared later."""
+    where = run.track.positions[len(run.track.times) // 2]
+    scenario = replace(run.scenario, traffic=(), obstacles=(Obstacle(1, *where, 500.0, appears_at=1.0),))
+    found = truth(scenario, rows_of(run.track), tmp_path / "nothing")
+    assert (found["judged"], found["violations"], found["min_margin_m"]) == ("standing", 0, None)
+
+
 def test_what_was_before_a_restart_does_not_count(run):
     """The first attempt flies 100 km off, then the plant is back at its start: no leap through the field."""
     first = [(t, "flying", 1e5, 1e5, 200.0) for t in np.arange(0.0, 500.0, 1.0)]
