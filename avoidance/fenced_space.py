@@ -6,16 +6,16 @@ import numpy as np
 
 from avoidance.free_space import FreeSpace, free_candidates
 from avoidance.geofence import Geofence, Walls
-from avoidance.geometry import Point, distances, point_distances
+from avoidance.geometry import Point, distances, point_distances, segments_clearance
 from avoidance.tangent_graph import shortest_path
-from avoidance.types import Floats
+from avoidance.types import Bools, Floats
 
 OUTSIDE = 0.01
 """Candidates lie this much further from walls than they must [m]."""
 MOST_WALLS = 60
 """Walls nearest to the target among which candidates are looked for."""
 MOST_WAYS = 20
-"""Candidates to which a way is looked for."""
+"""Candidates to which a way is looked for; those seen from one that has none need not be asked for."""
 
 
 def nearest_within(
@@ -65,15 +65,27 @@ def nearest_within(
     walls = Walls(fence.walls, room_pass)
     space = FreeSpace.of(centres, np.minimum(radii_pass, point_distances(centres, here)))
     home = space.component(here)
-    connected = [point for point in points if space.component(point) == home]
-    for point in connected[:MOST_WAYS]:
+    left = points[[space.component(point) == home for point in points]]
+    for _ in range(MOST_WAYS):
+        if not len(left):
+            return None
+        point = left[0]
         free = np.minimum(point_distances(centres, here), point_distances(centres, point)) - 0.5
         if (
             shortest_path(here, point, centres, np.maximum(np.minimum(radii_pass, free), 0.0), walls)
             is not None
         ):
             return float(point[0]), float(point[1])
+        left = left[~_seen_from(point, left, centres, radii_pass, walls)]
     return None
+
+
+def _seen_from(point: Floats, others: Floats, centres: Floats, radii: Floats, walls: Walls) -> Bools:
+    """Which points can be flown straight to from one, itself among them: they are no better to reach."""
+    begin = np.broadcast_to(point, others.shape)
+    clear = (segments_clearance(begin, others, centres) >= radii - 1e-3).all(axis=1)
+    seen = clear & (walls.clearance(begin, others) >= walls.room)
+    return np.asarray(seen | (others == point).all(axis=1))
 
 
 def _lines_beside(goal: Floats, walls: Floats, room: float) -> Floats:

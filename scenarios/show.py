@@ -167,11 +167,15 @@ def _verdict(flown: Flown, score: Score) -> str:
         parts.append(f"Not completed: the time limit of {clock(flown.scenario.limit)} was reached.")
     elif not score.summary["completed"]:
         for vehicle in score.vehicles:
-            missed = [str(fate.goal.waypoint + 1) for fate in vehicle.fates if not fate.met]
             of = "" if len(score.vehicles) == 1 else f" of {vehicle.name}"
-            if missed:
-                text = f"waypoint {', '.join(missed)}{of} was not passed although it could be reached"
-                parts.append(f"Not completed: {text}.")
+            for moved, words in (
+                (False, "was not passed although it could be reached"),
+                (True, "cannot be reached, and the nearest place to it that can was not passed either"),
+            ):
+                fates = [fate for fate in vehicle.fates if not fate.met and fate.goal.replaced is moved]
+                if fates:
+                    missed = ", ".join(str(fate.goal.waypoint + 1) for fate in fates)
+                    parts.append(f"Not completed: waypoint {missed}{of} {words}.")
     if violations:
         times = "once" if violations == 1 else f"{violations} times"
         parts.append(f"A safety sphere was entered {times}.")

@@ -149,6 +149,19 @@ def test_the_nearest_place_is_in_the_part_of_the_fence_that_can_be_reached() -> 
     assert found == pytest.approx((10_000.0, 4850.0), abs=0.1)
 
 
+@pytest.mark.parametrize("room", [95.0, 0.0])
+def test_what_shuts_a_field_from_edge_to_edge_leaves_a_place_before_it(room: float) -> None:
+    """All the nearest places lie behind it, more of them than ways are looked for."""
+    centres = np.array([(11_000.0, east) for east in np.arange(-3000.0, 3001.0, 1500.0)])
+    fence = Geofence([box(-3000.0, -3500.0, 24_000.0, 3500.0, include=True)])
+    keep = np.full(5, 1025.0)
+    found = nearest_within((20_000.0, 0.0), (0.0, 0.0), centres, keep + room, keep, fence, 25.0, 25.0 + room)
+    notch = 11_000.0 - math.sqrt((1025.0 + room) ** 2 - 750.0**2)  # between two of them
+    assert found is not None
+    assert found[0] == pytest.approx(notch, abs=0.1)
+    assert abs(found[1]) == pytest.approx(750.0, abs=0.1)
+
+
 def test_an_orbit_turns_away_from_the_fence() -> None:
     own, way = ownship(), route((40_000.0, 0.0))
     fence = Geofence([box(-5000.0, -60.0, 50_000.0, 5000.0, include=True)])

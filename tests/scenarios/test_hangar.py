@@ -84,3 +84,20 @@ def test_a_vehicle_tells_how_far_gusts_carry_it(guidance, limit):
         performance = hangar.own_vehicle().performance
     assert performance.tracking_error == limit
     assert performance.wind_bound == pytest.approx(scenario.wind.speed + 4.26, abs=0.01)
+
+
+def test_a_waypoint_that_cannot_be_reached_is_not_said_to_be_reachable():
+    flown, judged = encounter()
+    (vehicle,) = judged.vehicles
+    fate = vehicle.fates[-1]
+    for point, words in (
+        ((fate.goal.north, fate.goal.east), "although it could be"),
+        ((0.0, 9.0), "cannot be reached"),
+    ):
+        missed = replace(fate, goal=replace(fate.goal, point=point), passed_at=None)
+        figures = judged.summary | {"completed": False}
+        story = _verdict(
+            flown, replace(judged, summary=figures, vehicles=(replace(vehicle, fates=(missed,)),))
+        )
+        assert story.startswith(f"Not completed: waypoint {fate.goal.waypoint + 1}")
+        assert words in story
