@@ -126,7 +126,6 @@ def px4(
     130 interrupted (what was flown is written).
     """
     with _errors():
-        from offboard.hil.errors import OptionError  # noqa: PLC0415
         from offboard.hil.sensors import SensorModel  # noqa: PLC0415
         from scenarios.hil_options import options_of  # noqa: PLC0415
         from scenarios.hil_run import run_px4_serial, run_px4_tcp  # noqa: PLC0415
@@ -135,11 +134,14 @@ def px4(
             "px4", aircraft, airframe, launch, launch_throttle, launch_delay, home, start, wind, faults,
             values or (), seed, SensorModel(gps_rate=gps_rate, gps_latency=gps_latency),
         )  # fmt: skip
+        _refuse("--real-time", real_time and not self_test, "only with --self-test; --serial is always so")
+        _refuse_what_does_nothing(output, with_avoidance, arm=arm, self_test=self_test)
+        sitl_alone = "only with --serial: PX4 SITL has MAVLink ports of its own"
+        _refuse("--mission-link", mission_link is not None and serial is None, sitl_alone)
+        _refuse("--speed", speed != 1.0 and serial is not None, "not with --serial: a board has real time")
         if self_test:
             _self_test(options, seconds, real_time=real_time, as_json=as_json)
         options, course = _course(options, output, until, timeout, as_json, with_avoidance, connect, arm)
-        if mission_link is not None and serial is None:
-            raise OptionError("--mission-link", ["only with --serial: PX4 SITL has MAVLink ports of its own"])
         if serial is not None:
             run_px4_serial(options, serial, mission_link or DEFAULT_LINKS, course)
         else:
@@ -185,6 +187,7 @@ def ardupilot(
             "ardupilot", aircraft, airframe, launch, launch_throttle, launch_delay, home, start, wind, faults,
             values or (), seed,
         )  # fmt: skip
+        _refuse_what_does_nothing(output, with_avoidance, arm=arm, self_test=self_test)
         if self_test:
             _self_test(options, seconds, real_time=False, as_json=as_json)
         options, course = _course(options, output, until, timeout, as_json, with_avoidance, connect, arm)
@@ -198,6 +201,23 @@ def airframes() -> None:
 
     for name in airframe_names():
         typer.echo(f"{name:<18}{load_airframe(name).description}")
+
+
+def _refuse(option: str, given: bool, words: str) -> None:
+    """An option that would do nothing is a mistake: somebody relies on it."""
+    from offboard.hil.errors import OptionError  # noqa: PLC0415
+
+    if given:
+        raise OptionError(option, [words])
+
+
+def _refuse_what_does_nothing(
+    output: Path | None, with_avoidance: str | None, *, arm: bool, self_test: bool
+) -> None:
+    """As `_refuse`, of what both commands have."""
+    _refuse("--arm", arm and with_avoidance is None, "only with --with-avoidance")
+    _refuse("--with-avoidance", with_avoidance is not None and self_test, "not with --self-test")
+    _refuse("--output", output is not None and self_test, "not with --self-test: it writes nothing")
 
 
 def _course(

@@ -140,6 +140,11 @@ def test_a_port_that_is_taken_is_a_failed_link():
         (("px4", "--serial", "/dev/nothing"), ["--serial", "DEVICE:BAUD"]),
         (("px4", "--serial", "x:1", "--mission-link", "tcp"), ["--mission-link", "'tcp'"]),
         (("px4", "--mission-link", "udp://127.0.0.1:14550"), ["--mission-link", "only with --serial"]),
+        (("px4", "--real-time"), ["--real-time", "only with --self-test"]),
+        (("px4", "--serial", "x:1", "--speed", "2"), ["--speed", "not with --serial"]),
+        (("ardupilot", "--arm"), ["--arm", "only with --with-avoidance"]),
+        (("ardupilot", "--self-test", "-o", "out"), ["--output", "not with --self-test"]),
+        (("px4", "--self-test", "--with-avoidance", "single"), ["--with-avoidance", "not with --self-test"]),
     ],
 )
 def test_bad_input_is_one_message_and_exit_code_2(arguments, words):
