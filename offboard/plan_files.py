@@ -223,6 +223,11 @@ def rally_of(file: Path, value: object) -> tuple[tuple[float, float, float], ...
     if not isinstance(points, list):
         raise PlanFileError(file, "rallyPoints has no list of points")
     found = [numbers(file, {"rallyPoints": point}, "rallyPoints", 3) for point in points]
+    for place in found:
+        if not (abs(place[0]) <= 90.0 and abs(place[1]) <= 180.0 and math.isfinite(place[2])):
+            raise PlanFileError(
+                file, f"rallyPoints = {place}: is no latitude (±90), longitude (±180), altitude"
+            )
     return tuple((a, b, c) for a, b, c in found)
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from offboard.errors import PlanFileError
 from offboard.mission import CameraAction, MissionItem, MissionPlan, VehicleAction
-from offboard.plan_files import PlanFile, read_plan, write_plan
+from offboard.plan_files import PlanFile, rally_of, read_plan, write_plan
 
 ITEMS = (
     MissionItem(14.39, 76.60, 100.0, vehicle_action=VehicleAction.TAKEOFF),
@@ -141,3 +141,9 @@ def test_what_is_no_json_or_not_there_is_said_so(tmp_path: Path) -> None:
         read_plan(file)
     with pytest.raises(PlanFileError, match="cannot be read"):
         read_plan(tmp_path / "absent.plan")
+
+
+@pytest.mark.parametrize("place", [[200.0, 76.6, 60.0], [14.4, -181.0, 60.0], [14.4, 76.6, float("nan")]])
+def test_rally_points_that_are_nowhere_are_told(tmp_path: Path, place: list[float]) -> None:
+    with pytest.raises(PlanFileError, match=r"rallyPoints = .*latitude"):
+        rally_of(tmp_path / "m.plan", {"version": 2, "points": [place]})
