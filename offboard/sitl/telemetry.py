@@ -92,8 +92,9 @@ class Telemetry:
         )
 
     def _sys_status(self) -> Message:
-        charge, sensors = self._aircraft.charge(), _SENSORS
-        health = (sensors, sensors, sensors)
+        charge, ardupilot = self._aircraft.charge(), mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
+        unbroken = mavlink.MAV_SYS_STATUS_GEOFENCE if self._captain.flavour.autopilot == ardupilot else 0
+        health = (_SENSORS, _SENSORS, _SENSORS | unbroken)  # as both were recorded without a fence
         return mavlink.MAVLink_sys_status_message(
             *health, 150, _millivolts(charge) * CELLS, -1, round(100 * charge), 0, 0, 0, 0, 0, 0
         )

@@ -62,6 +62,16 @@ def test_position_and_motion_are_those_of_the_plant():
     assert ground.last("EXTENDED_SYS_STATE").landed_state == mavlink.MAV_LANDED_STATE_IN_AIR
 
 
+@pytest.mark.parametrize(("flavour", "unbroken"), [("ardupilot", True), ("px4", False)])
+def test_the_fence_that_nobody_set_is_as_healthy_as_the_autopilot_says(flavour, unbroken):
+    """Of the recorded ones ArduPlane sets the bit of health without the bit of presence, PX4 neither."""
+    ground = Station(autopilot(flavour))
+    ground.fly(3.0)
+    told, bit = ground.last("SYS_STATUS"), mavlink.MAV_SYS_STATUS_GEOFENCE
+    assert not told.onboard_control_sensors_present & bit
+    assert bool(told.onboard_control_sensors_health & bit) == unbroken
+
+
 def test_it_stands_still_until_it_is_launched():
     ground = Station(autopilot())
     ground.fly(5.0)
