@@ -9,12 +9,13 @@ from dataclasses import replace
 import numpy as np
 
 from avoidance.conflicts import first_conflict, to_be_avoided
-from avoidance.contingency import first_trap, orbit_on_arrival
+from avoidance.contingency import first_trap
 from avoidance.escape import Escape
 from avoidance.geofence import OPEN, Geofence
 from avoidance.holding import NoWay, Vigil, no_room_yet, skipped
 from avoidance.known import Known, keep_what_can_be_kept, kept_margin, known_obstacles, within_fence
 from avoidance.ladder import Way, way_round
+from avoidance.orbits import orbit_on_arrival
 from avoidance.parameters import DEFAULT, Parameters
 from avoidance.passages import Gap, way_with_orbits
 from avoidance.rally import Rally

@@ -9,7 +9,6 @@ round in, unless it is short. `docs/guarantee.md` states it with its assumptions
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,98 +16,13 @@ from avoidance.flown import SEQUENCING_DELAY, late_turn
 from avoidance.geofence import FENCE, Walls
 from avoidance.geometry import segments_clearance
 from avoidance.known import Circles, Known
+from avoidance.orbits import SPACING, TIGHT, orbit_centres, orbit_reach, roll_in, turning_room
 from avoidance.parameters import Parameters
 from avoidance.route_check import Blocked, altitude_bands, remaining_points
-from avoidance.types import Bools, Floats, Ints, Ownship, Performance, Route, Threat, Waypoint
+from avoidance.types import Bools, Floats, Ints, Ownship, Performance, Route, Threat
 
-WIDE, TIGHT = 1.5, 1.2
-"""Radii of a holding orbit in turn radii: the one preferred, and the smallest flown."""
-SPACING = 25.0
-"""Distance between the points of a route at which an orbit is looked for [m]."""
 SHARP = 0.5 * math.pi
 """Beyond this change of course a vehicle may leave a corner's triangle [rad]."""
-SIDES = np.array([1.0, -1.0])
-"""Clockwise seen from above, anticlockwise."""
-
-
-@dataclass(frozen=True, slots=True)
-class Orbit:
-    """A circle to wait on."""
-
-    centre: tuple[float, float]
-    """North and east [m]."""
-    radius: float
-    """Radius [m]."""
-    direction: int
-    """+1 clockwise seen from above, -1 anticlockwise."""
-    clearance: float
-    """Least distance between any sphere and the flown curve, its errors included [m]; negative inside."""
-
-
-def orbit_reach(performance: Performance, radii: float = TIGHT) -> float:
-    """Radius of the disc about an orbit's centre that holds the flight into it and round it [m].
-
-    Notes
-    -----
-    The orbit touches the present course one roll time ahead, so the flight begins √(r² + ℓ²) from its
-    centre; what guidance overshoots, wind and an opposite bank included, is below two tracking errors
-    (measured on both fidelities, wind up to 11 m/s: at most 8.4 m).
-    """
-    radius = radii * performance.turn_radius
-    return math.hypot(radius, _lead(performance)) + 2.0 * performance.tracking_error
-
-
-def orbit_from_here(own: Ownship, known: Known, performance: Performance) -> Orbit:
-    """The best orbit that can be begun at once: a wide one if it is free, else the freer of the tight ones.
-
-    Parameters
-    ----------
-    own : Ownship
-        Where the vehicle is.
-    known : Known
-        What stands still, and the geofence.
-    performance : Performance
-        How it turns.
-
-    Returns
-    -------
-    Orbit
-        Free if its clearance is not negative.
-    """
-    wide, tight = (_freer_side(own, known, performance, radii) for radii in (WIDE, TIGHT))
-    return wide if wide.clearance >= 0.0 else tight
-
-
-def orbit_on_arrival(
-    before: tuple[float, float], waypoint: Waypoint, known: Known, performance: Performance
-) -> bool:
-    """True if an orbit can be begun wherever the arrival at a waypoint is noticed and acted upon.
-
-    The vehicle comes straight from `before` [m].
-    """
-    begin, there = np.array(before), np.array([waypoint.north, waypoint.east])
-    unit = (there - begin) / max(math.dist(before, there), 1e-9)
-    late = performance.airspeed * (SEQUENCING_DELAY + max(1.0, performance.edit_time))
-    along = np.linspace(
-        -performance.acceptance_radius, late, 1 + math.ceil((late + performance.acceptance_radius) / SPACING)
-    )
-    course = np.array([math.atan2(unit[1], unit[0])])
-    centres = _centres(there + along[:, None] * unit, course, performance, TIGHT).reshape(-1, 2)
-    circles = known.circles(waypoint.altitude, waypoint.altitude)
-    clearance = _clearance(centres, circles, known.walls).reshape(-1, 2)
-    needed = orbit_reach(performance) + 2.0 * performance.tracking_error
-    return bool((clearance >= needed).any(axis=1).all())
-
-
-def _freer_side(own: Ownship, known: Known, performance: Performance, radii: float) -> Orbit:
-    here, course = np.array([[own.north, own.east]]), np.array([own.course])
-    centres = _centres(here, course, performance, radii)[0]
-    clearance = _clearance(centres, known.circles(own.altitude, own.altitude), known.walls)
-    clearance -= orbit_reach(performance, radii)
-    side = int(np.argmax(clearance))
-    north, east = centres[side].tolist()
-    radius = radii * performance.turn_radius
-    return Orbit((north, east), radius, int(SIDES[side]), float(clearance[side]))
 
 
 def first_trap(
@@ -179,34 +93,6 @@ def longest_stretch(performance: Performance, pop_up_room: float) -> float:
     return pop_up_room - 2.0 * orbit_reach(performance) - 2.0 * speed - 2.0 * SPACING
 
 
-def turning_room(performance: Performance) -> float:
-    """What is to be kept from spheres on one side, so that an orbit to that side is free [m]."""
-    return TIGHT * performance.turn_radius + orbit_reach(performance) + 2.0 * performance.tracking_error
-
-
-def _lead(performance: Performance) -> float:
-    """How far the vehicle flies until it has rolled into a turn [m]."""
-    return (performance.airspeed + performance.wind_bound) * performance.roll_time
-
-
-def _centres(points: Floats, courses: Floats, performance: Performance, radii: float) -> Floats:
-    """Centres of the orbits to both sides that begin at n points, on n courses or on one, (n, 2, 2) [m]."""
-    ahead, right = np.empty((len(courses), 2)), np.empty((len(courses), 2))
-    ahead[:, 0], ahead[:, 1] = np.cos(courses), np.sin(courses)
-    right[:, 0], right[:, 1] = -ahead[:, 1], ahead[:, 0]
-    entry = points + _lead(performance) * ahead
-    offset = radii * performance.turn_radius * SIDES
-    return np.asarray(entry[:, None] + offset[None, :, None] * right[:, None])
-
-
-def _clearance(points: Floats, circles: Circles, walls: Walls) -> Floats:
-    """Distance of points, shape (n, 2), from the nearest sphere or wall [m], shape (n,)."""
-    north = points[:, 0, None] - circles.centres[:, 0]
-    east = points[:, 1, None] - circles.centres[:, 1]
-    spheres = (np.hypot(north, east) - circles.hard).min(axis=1, initial=math.inf)
-    return np.asarray(np.minimum(spheres, walls.clearance(points, points)))
-
-
 def room_outside(performance: Performance, turn: float) -> float:
     """What a route round a sphere keeps from it so that orbits on the other side are free [m].
 
@@ -259,7 +145,7 @@ def _corner_room(turn: Floats, performance: Performance) -> Floats:
 
 def _swing(performance: Performance) -> float:
     """How far an orbit's centre lies from where it is decided on [m]."""
-    return math.hypot(TIGHT * performance.turn_radius, _lead(performance))
+    return math.hypot(TIGHT * performance.turn_radius, roll_in(performance))
 
 
 def _narrow(
@@ -289,14 +175,14 @@ def _narrow(
     at = _places(unit, begin, length, circles.centres[near], radii, (walls if fenced else Walls(), widest))
     run = performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
     places, circle = begin + at[:, None] * unit, (circles.centres[near], circles.hard[near])
-    centres = _centres(places, courses[1:2], performance, TIGHT)
+    centres = orbit_centres(places, courses[1:2], performance)
     margins = _margins(centres, centres, *circle, walls)
     extra = np.zeros(len(at))
     zones = (at < performance.capture_distance, length - at < run)
     for zone, more, course, turn in zip(zones, room, courses[::2], _turned(courses), strict=True):
         extra[zone] = np.maximum(extra[zone], more)
         if 0.0 < turn <= SHARP and zone.any():
-            swung = _centres(places[zone], np.array([course]), performance, TIGHT)
+            swung = orbit_centres(places[zone], np.array([course]), performance)
             margins[zone] = np.minimum(margins[zone], _margins(centres[zone], swung, *circle, walls))
     free: Bools = (margins.min(axis=2) >= (reach + extra)[:, None]).any(axis=1)
     return at[~free], np.append(near, -1)[margins[~free].argmin(axis=2)]
@@ -347,13 +233,4 @@ def _blocked(known: Known, rows: Ints, leg: int, distance: float, own: Ownship, 
     return Blocked(threat, leg, rows)
 
 
-__all__ = [
-    "Orbit",
-    "first_trap",
-    "longest_stretch",
-    "orbit_from_here",
-    "orbit_on_arrival",
-    "orbit_reach",
-    "room_outside",
-    "turning_room",
-]
+__all__ = ["first_trap", "longest_stretch", "room_outside"]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from avoidance.contingency import Orbit, orbit_from_here
+from avoidance.orbits import Orbit, orbit_from_here
 from avoidance.passages import Gap
 from avoidance.rally import Rally
 from avoidance.route_check import Blocked

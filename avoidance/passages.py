@@ -9,11 +9,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from avoidance.contingency import first_trap, turning_room
+from avoidance.contingency import first_trap
 from avoidance.detours import fly_round, search_problem
 from avoidance.exact import exact_plan
 from avoidance.known import Known
 from avoidance.ladder import Corners, Plan, Way, widest_way
+from avoidance.orbits import turning_room
 from avoidance.parameters import Parameters
 from avoidance.problem import WaypointProblem
 from avoidance.route_check import Blocked

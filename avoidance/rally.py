@@ -8,9 +8,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from avoidance.conflicts import first_conflict
-from avoidance.contingency import WIDE, first_trap, orbit_reach
+from avoidance.contingency import first_trap
 from avoidance.geometry import segments_clearance
 from avoidance.known import Known
+from avoidance.orbits import WIDE, orbit_reach
 from avoidance.parameters import Parameters
 from avoidance.route_check import Blocked, first_blocked_leg
 from avoidance.types import Floats, Hold, Ownship, Performance, Route, Rung, Waypoint

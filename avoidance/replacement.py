@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from avoidance.contingency import turning_room
 from avoidance.fenced_space import nearest_within
 from avoidance.free_space import nearest_free
 from avoidance.geofence import FENCE, OPEN, Geofence, Walls
 from avoidance.geometry import point_distances
 from avoidance.known import Circles, Known
+from avoidance.orbits import turning_room
 from avoidance.parameters import Parameters
 from avoidance.types import Decision, Ownship, Performance, Replace, Route, Rung, Waypoint
 from avoidance.words import replace_words

@@ -8,16 +8,9 @@ import numpy as np
 import pytest
 
 from avoidance import Ownship, Route
-from avoidance.contingency import (
-    first_trap,
-    longest_stretch,
-    orbit_from_here,
-    orbit_on_arrival,
-    orbit_reach,
-    room_outside,
-    turning_room,
-)
+from avoidance.contingency import first_trap, longest_stretch, room_outside
 from avoidance.known import Known
+from avoidance.orbits import orbit_from_here, orbit_on_arrival, orbit_reach, turning_room
 from avoidance.parameters import DEFAULT, PAPER
 from tests.avoidance.test_route_check import known
 from tests.avoidance.worlds import PERFORMANCE, ownship, route

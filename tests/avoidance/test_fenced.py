@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 
 from avoidance import Detour, Keep, Replace, Reroute, Route
 from avoidance.agent import Agent
-from avoidance.contingency import orbit_from_here
 from avoidance.fenced_space import nearest_within
 from avoidance.geofence import FenceArea, Geofence, Walls
 from avoidance.known import within_fence
+from avoidance.orbits import orbit_from_here
 from avoidance.parameters import DEFAULT
 from avoidance.tangent_graph import shortest_path
 from tests.avoidance.test_route_check import known
