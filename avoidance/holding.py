@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from avoidance.orbits import Orbit, orbit_from_here
 from avoidance.passages import Gap
 from avoidance.rally import Rally
-from avoidance.route_check import Blocked
+from avoidance.route_check import Blocked, first_blocked_leg
 from avoidance.types import Decision, Hold, Keep, Ownship, Replace, Route, Rung, Waypoint
 from avoidance.words import threat_words
 
@@ -101,7 +103,7 @@ class Vigil:
             return self._rally.hold(gap.own, refuge, gap.blocked)
         orbit = orbit_from_here(gap.own, gap.known, gap.performance)
         near = gap.blocked.threat.distance <= LAST_MOMENT * gap.performance.turn_radius
-        if orbit.clearance < 0.0 and not near:
+        if orbit.clearance < 0.0 and not (near and _enters(gap)):
             return None
         self.under_way, self._refuge = True, None
         return hold_on(gap.own, orbit, gap.blocked)
@@ -112,6 +114,20 @@ class Vigil:
         if self._refuge is not None:
             where = self._rally.words(gap.own, self._refuge)
         return Keep(why=holding_words(gap.blocked, where), threat=gap.blocked.threat, rung=Rung.ORBIT)
+
+
+def _enters(gap: Gap) -> bool:
+    """True if the route leads into a sphere, and not only nearer to it than is to be kept.
+
+    With the tracking error, on the curve that will be flown: none that enters nothing is left for one that
+    does.
+    """
+    known = replace(
+        gap.known,
+        margin=gap.known.doubt + gap.performance.tracking_error,
+        slack=np.zeros_like(gap.known.slack),
+    )
+    return first_blocked_leg(gap.own, gap.route, known, gap.performance) is not None
 
 
 def no_room_yet(blocked: Blocked) -> Keep:

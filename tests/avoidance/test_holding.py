@@ -124,3 +124,20 @@ def test_a_hold_ends_when_only_a_later_leg_far_ahead_is_blocked() -> None:
     assert "hold" in said
     assert said[-1] == "resume"
     assert "no way round is known yet" in decision.why
+
+
+@pytest.mark.parametrize(("aside", "held"), [(1008.0, False), (990.0, True)])
+def test_no_route_that_enters_nothing_is_left_for_a_circle_that_does(aside: float, held: bool) -> None:
+    """Where a corridor without room to circle in ends between two spheres, nearer than is to be kept."""
+    places = [*((200.0 * k, 1040.0) for k in range(15, 35)), (7000.0, aside)]
+    walls = [(north, side * east) for north, east in places for side in (-1, 1)]
+    contacts = [Contact(k, *place, 200.0) for k, place in enumerate(walls)]
+    route = Route(ROUTE.origin, (Waypoint(40_000.0, 0.0, 200.0),))
+    agent = Agent(ALONE, replace(DEFAULT, pop_up_room=None), way=lambda problem, _: None)
+    said = []
+    for t in map(float, range(200)):
+        own = Ownship(t, 15.0 * t + 4500.0, 0.0, 200.0, 15.0, 0.0, airspeed=15.0)
+        said.append(agent.decide(own, route, RadarScan.of(t, contacts)).name)
+        if said[-1] == "hold":
+            break
+    assert ("hold" in said) == held
