@@ -117,16 +117,16 @@ class LiveFlight:
     def __init__(
         self, scenario: Scenario, vehicle: LiveVehicle, source: Source, parameters: Parameters, seed: int = 0
     ) -> None:
-        from scenarios.hangar import Hangar  # noqa: PLC0415
-
         self._scenario, self._parameters, self._seed = scenario, parameters, seed
         self._source = source
         self.vehicle = vehicle
         truth = source.radar is None
+        vehicle.pump()
+        vehicle.aboard.begin()  # before intruders are made, which takes seconds of a fast simulation
+        from scenarios.hangar import Hangar  # noqa: PLC0415
+
         self._hangar = Hangar(scenario, parameters) if truth and scenario.traffic else None
         movers = self._hangar.traffic() if self._hangar is not None else []
-        vehicle.pump()
-        vehicle.aboard.begin()
         self.shadow = Shadow(vehicle)
         self.world = World(scenario.obstacles if truth else (), {OWN: self.shadow}, movers)
         generators = streams(seed)
