@@ -21,7 +21,7 @@ LONGEST_WAIT = 15.0
 PATIENCE = 20
 """A mission item that no route leads to is given up after so many attempts from where the vehicle waits."""
 LAST_MOMENT = 4.0
-"""Nearer to what blocks the way than this many turn radii the vehicle turns, whatever the orbit's room."""
+"""Nearer to a sphere that its route enters than this many turn radii the vehicle turns, whatever the room."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -216,15 +216,16 @@ def exact_route(problem: WaypointProblem, longest: float = math.inf) -> Corners 
     free_start = point_distances(problem.centres, problem.start) - 0.5
     free_target = point_distances(problem.centres, problem.target) - 0.5
     beside = room_outside(performance, LARGEST_CORNER) - problem.parameters.margin
-    pads = (max(_cut(performance), beside), *np.multiply(PADS, performance.turn_radius).tolist())
-    for pad in pads:
+    shut = math.inf
+    for pad in (max(_cut(performance), beside), *np.multiply(PADS, performance.turn_radius).tolist()):
+        if pad >= shut:
+            continue
         radii = np.maximum(np.minimum(np.minimum(problem.keep + pad, free_start), free_target), 0.0)
         walls = replace(problem.walls, room=problem.walls.room + pad)
         path = shortest_path(problem.start, problem.target, problem.centres, radii, walls, longest)
-        if path is None and pad > pads[2]:
-            return None
         if path is None:
-            continue  # there may be one that is narrower
+            shut = pad  # there may be one that is narrower, none that is as wide
+            continue
         corners = path.polyline(LARGEST_CORNER)
         if flyable(problem, corners):
             inner = corners[1:-1]

@@ -33,6 +33,14 @@ def test_the_exact_route_is_clear_as_flown() -> None:
     assert feasible_segments(starts, ends, extra, question.centres, keep)[0] == 0.0
 
 
+def test_a_gap_that_leaves_hardly_any_room_is_found() -> None:
+    """Wider circles shut it, and the way about both is too long: then narrower ones are tried."""
+    gap, shut = (problem([(9000.0, -aside), (9000.0, aside)]) for aside in (1027.0, 1024.0))
+    longest = math.dist(gap.start, gap.target) + 50.0
+    assert exact_route(gap, longest) == ()
+    assert exact_route(shut, longest) is None
+
+
 def test_a_short_route_beats_a_single_waypoint_far_away() -> None:
     plan = way_round(problem(WALLS, target=(17_000.0, 0.0)), np.random.default_rng(0))
     assert plan is not None
