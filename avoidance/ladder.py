@@ -16,10 +16,9 @@ from typing import TypeAlias
 
 import numpy as np
 
-from avoidance.constraints import feasible_segments
 from avoidance.contingency import room_outside
 from avoidance.flown import SEQUENCING_DELAY, flown_segments
-from avoidance.geometry import point_distances, segment_point_distance
+from avoidance.geometry import point_distances, segment_point_distance, segments_clearance
 from avoidance.problem import WaypointProblem
 from avoidance.search import search_waypoint
 from avoidance.tangent_graph import shortest_path
@@ -40,9 +39,10 @@ Corners: TypeAlias = tuple[tuple[float, float], ...]
 LARGEST_CORNER = math.radians(15.0)
 """Heading change of a corner of an exact route [rad]."""
 
-PADS = (0.5, 0.025, 1.0, 2.0, 4.0)
-"""By how much circles are widened in turn, in turn radii, where a route that leaves just enough room for
-orbits cannot be flown: next to a circle there may be hardly any room; then ever more."""
+HARDLY = 0.025
+"""By how much circles are widened where more would shut the way, in turn radii."""
+ROUNDS = 6
+"""How often circles are widened until a route can be flown."""
 
 ROOM_LEFT = 50.0
 """A separation from an intruder is worth a change of route if it is better by this [m]."""
@@ -208,28 +208,39 @@ def _kept_from_intruders(problem: WaypointProblem, route: Corners | None) -> Cor
 def exact_route(problem: WaypointProblem, longest: float = math.inf) -> Corners | None:
     """Waypoints of the shortest path round everything known that can be flown, or None if over `longest` [m].
 
-    The circles are widened step by step until the flown curve, with its turns, is clear of those that must
-    be kept; intruders are not considered. No waypoints at all: the straight way leads out of a margin that
-    the vehicle is already inside.
+    First with what leaves room for orbits beside; where that shuts the way, with hardly any. Intruders are
+    not considered. No waypoints at all: the straight way leads out of a margin that the vehicle is already
+    inside.
     """
     performance = problem.performance
+    beside = room_outside(performance, LARGEST_CORNER) - problem.parameters.margin
+    for pad in (max(_cut(performance), beside), HARDLY * performance.turn_radius):
+        route = _as_flown(problem, pad, longest)
+        if route is not None:
+            return route
+    return None
+
+
+def _as_flown(problem: WaypointProblem, pad: float, longest: float) -> Corners | None:
+    """The same with circles and walls wider by `pad` [m].
+
+    Those that the flown curve, with its turns, comes too near to are widened further until it is clear.
+    """
     free_start = point_distances(problem.centres, problem.start) - 0.5
     free_target = point_distances(problem.centres, problem.target) - 0.5
-    beside = room_outside(performance, LARGEST_CORNER) - problem.parameters.margin
-    shut = math.inf
-    for pad in (max(_cut(performance), beside), *np.multiply(PADS, performance.turn_radius).tolist()):
-        if pad >= shut:
-            continue
-        radii = np.maximum(np.minimum(np.minimum(problem.keep + pad, free_start), free_target), 0.0)
-        walls = replace(problem.walls, room=problem.walls.room + pad)
+    keep, room = problem.keep + pad, problem.walls.room + pad
+    for _ in range(ROUNDS):
+        radii = np.maximum(np.minimum(np.minimum(keep, free_start), free_target), 0.0)
+        walls = replace(problem.walls, room=room)
         path = shortest_path(problem.start, problem.target, problem.centres, radii, walls, longest)
         if path is None:
-            shut = pad  # there may be one that is narrower, none that is as wide
-            continue
+            return None
         corners = path.polyline(LARGEST_CORNER)
-        if flyable(problem, corners):
-            inner = corners[1:-1]
-            return tuple((float(point[0]), float(point[1])) for point in inner)
+        lacking, outside = _shortfalls(problem, corners)
+        if not lacking.any() and outside <= 0.0:
+            return tuple((float(point[0]), float(point[1])) for point in corners[1:-1])
+        keep = keep + np.where(lacking > 0.0, 2.0 * lacking + 1.0, 0.0)
+        room += 2.0 * outside + 1.0 if outside > 0.0 else 0.0
     return None
 
 
@@ -261,10 +272,19 @@ def flyable(problem: WaypointProblem, corners: Floats) -> bool:
 
     `corners`, shape (k, 2) [m], begin at the start and end at the target.
     """
+    lacking, outside = _shortfalls(problem, corners)
+    return not lacking.any() and outside <= 0.0
+
+
+def _shortfalls(problem: WaypointProblem, corners: Floats) -> tuple[Floats, float]:
+    """By how much a route, flown with its turns, comes too near to each circle, shape (d,), and walls [m]."""
     if problem.before is not None:
         corners = np.concatenate([np.array([problem.before]), corners])
     starts, ends, extra = flown_segments(corners[None], problem.course, problem.performance)
     skip = 0 if problem.before is None else 1
     starts, ends, extra = starts[:, skip:], ends[:, skip:], extra[:, skip:]
-    shortfall = feasible_segments(starts, ends, extra, problem.centres, problem.keep - 0.5)
-    return bool(shortfall[0] <= 0.0 and problem.walls.shortfall(starts, ends, extra)[0] <= 0.5)
+    lacking = np.zeros(len(problem.centres))
+    if len(lacking):
+        clearance = segments_clearance(starts[0], ends[0], problem.centres) - extra[0][:, None]
+        lacking = np.maximum(problem.keep - 0.5 - clearance.min(axis=0), 0.0)
+    return lacking, max(float(problem.walls.shortfall(starts, ends, extra)[0]) - 0.5, 0.0)

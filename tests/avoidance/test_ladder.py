@@ -10,6 +10,7 @@ import pytest
 from avoidance import Rung
 from avoidance.constraints import feasible_segments
 from avoidance.flown import flown_segments
+from avoidance.geometry import segments_clearance
 from avoidance.ladder import exact_route, way_round
 from tests.avoidance.worlds import PERFORMANCE, problem
 
@@ -39,6 +40,16 @@ def test_a_gap_that_leaves_hardly_any_room_is_found() -> None:
     longest = math.dist(gap.start, gap.target) + 50.0
     assert exact_route(gap, longest) == ()
     assert exact_route(shut, longest) is None
+
+
+def test_only_what_the_turns_come_near_to_is_kept_further_from() -> None:
+    """Just ahead of the vehicle a wide turn needs room; at the other circles there is no reason for it."""
+    question = problem([(1150.0, 100.0), (9000.0, -1500.0), (9000.0, 300.0)], target=(16_000.0, 0.0))
+    route = exact_route(question)
+    assert route is not None
+    corners = np.array([question.start, *route, question.target])
+    near, *far = (segments_clearance(corners[:-1], corners[1:], question.centres) - question.keep).min(axis=0)
+    assert near > 20.0 > min(far)
 
 
 def test_a_short_route_beats_a_single_waypoint_far_away() -> None:
