@@ -167,8 +167,8 @@ class Agent:
             return replaced
         known = keep_what_can_be_kept(known, own, self._performance)
         blocked = first_blocked_leg(own, route, known, self._performance)
-        if blocked is None:
-            blocked = first_trap(own, route, known, self._performance, self._parameters)
+        until = route if blocked is None else replace(route, waypoints=route.waypoints[: blocked.leg])
+        blocked = first_trap(own, until, known, self._performance, self._parameters) or blocked
         if blocked is None:
             blocked = first_conflict(own, route, known, self._performance)
         if blocked is not None:

@@ -6,7 +6,7 @@ import numpy as np
 
 from avoidance.ladder import Plan, exact_route, way_round
 from avoidance.problem import WaypointProblem
-from avoidance.types import Rung, Search
+from avoidance.types import Floats, Rung, Search
 
 NAME = "exact"
 """What the planner is called."""
@@ -25,9 +25,12 @@ def exact_way(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None
     return exact_plan(problem) or way_round(problem, rng)
 
 
-def exact_plan(problem: WaypointProblem) -> Plan | None:
-    """The shortest route of several waypoints, or None where there is none that traffic leaves free."""
-    route = exact_route(problem)
+def exact_plan(problem: WaypointProblem, room: Floats | float = 0.0) -> Plan | None:
+    """The shortest route of several waypoints, or None where there is none that traffic leaves free.
+
+    It keeps `room` more from each obstacle, as of `exact_route` [m].
+    """
+    route = exact_route(problem, room=room)
     if route is None or problem.separation_shortfall(route) > 0.0:
         return None
     search = Search(

@@ -205,30 +205,33 @@ def _kept_from_intruders(problem: WaypointProblem, route: Corners | None) -> Cor
     return route
 
 
-def exact_route(problem: WaypointProblem, longest: float = math.inf) -> Corners | None:
+def exact_route(
+    problem: WaypointProblem, longest: float = math.inf, room: Floats | float = 0.0
+) -> Corners | None:
     """Waypoints of the shortest path round everything known that can be flown, or None if over `longest` [m].
 
-    First with what leaves room for orbits beside; where that shuts the way, with hardly any. Intruders are
-    not considered. No waypoints at all: the straight way leads out of a margin that the vehicle is already
-    inside.
+    The path keeps `room`, shape (d,) or one for all, more from each obstacle [m]; the turns at its ends need
+    not. First with what leaves room for orbits beside; where that shuts the way, with hardly any. Intruders
+    are not considered. No waypoints at all: the straight way leads out of a margin that the vehicle is
+    already inside.
     """
     performance = problem.performance
     beside = room_outside(performance, LARGEST_CORNER) - problem.parameters.margin
     for pad in (max(_cut(performance), beside), HARDLY * performance.turn_radius):
-        route = _as_flown(problem, pad, longest)
+        route = _as_flown(problem, problem.keep + pad + room, pad, longest)
         if route is not None:
             return route
     return None
 
 
-def _as_flown(problem: WaypointProblem, pad: float, longest: float) -> Corners | None:
-    """The same with circles and walls wider by `pad` [m].
+def _as_flown(problem: WaypointProblem, keep: Floats, pad: float, longest: float) -> Corners | None:
+    """The same round circles of radii `keep`, shape (d,), and walls wider by `pad` [m].
 
     Those that the flown curve, with its turns, comes too near to are widened further until it is clear.
     """
     free_start = point_distances(problem.centres, problem.start) - 0.5
     free_target = point_distances(problem.centres, problem.target) - 0.5
-    keep, room = problem.keep + pad, problem.walls.room + pad
+    room = problem.walls.room + pad
     for _ in range(ROUNDS):
         radii = np.maximum(np.minimum(np.minimum(keep, free_start), free_target), 0.0)
         walls = replace(problem.walls, room=room)

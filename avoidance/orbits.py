@@ -16,6 +16,8 @@ WIDE, TIGHT = 1.5, 1.2
 """Radii of a holding orbit in turn radii: the one preferred, and the smallest flown."""
 SPACING = 25.0
 """Distance between the points of a route at which an orbit is looked for [m]."""
+BENDS = 0.5
+"""In a bend of a passage an orbit needs so much more room, in turn radii."""
 SIDES = np.array([1.0, -1.0])
 """Clockwise seen from above, anticlockwise."""
 
@@ -52,6 +54,33 @@ def turning_room(performance: Performance) -> float:
     return TIGHT * performance.turn_radius + orbit_reach(performance) + 2.0 * performance.tracking_error
 
 
+def waypoint_room(performance: Performance, margin: float) -> float:
+    """What a waypoint needs beyond the margin from every sphere, so that it can be left again [m].
+
+    Room to turn there, and for an orbit wherever the arrival is acted upon, on whatever course the vehicle
+    comes: there it can wait, and leave in any direction.
+    """
+    roll = roll_in(performance)
+    ahead = max(_acted_upon(performance) + roll, performance.acceptance_radius - roll)
+    swing = math.hypot(TIGHT * performance.turn_radius, ahead)
+    orbit = swing + orbit_reach(performance) + 2.0 * performance.tracking_error
+    return max(performance.turn_room, orbit - margin)
+
+
+def passage_room(performance: Performance, margin: float) -> float:
+    """What is needed beyond the margin on both sides of a way in, so that an orbit fits in beside it [m].
+
+    Half of what is needed on one side, in bends as well.
+    """
+    return 0.5 * max(turning_room(performance) + BENDS * performance.turn_radius - margin, 0.0)
+
+
+def _acted_upon(performance: Performance) -> float:
+    """How far behind a waypoint the arrival is acted upon at the latest [m]."""
+    speed = performance.airspeed + performance.wind_bound
+    return speed * (SEQUENCING_DELAY + max(1.0, performance.edit_time))
+
+
 def orbit_from_here(own: Ownship, known: Known, performance: Performance) -> Orbit:
     """The best orbit that can be begun at once: a wide one if it is free, else the freer of the tight ones.
 
@@ -82,8 +111,7 @@ def orbit_on_arrival(
     """
     begin, there = np.array(before), np.array([waypoint.north, waypoint.east])
     unit = (there - begin) / max(math.dist(before, there), 1e-9)
-    speed = performance.airspeed + performance.wind_bound
-    late = speed * (SEQUENCING_DELAY + max(1.0, performance.edit_time))
+    late = _acted_upon(performance)
     along = np.linspace(
         -performance.acceptance_radius, late, 1 + math.ceil((late + performance.acceptance_radius) / SPACING)
     )
@@ -138,6 +166,8 @@ __all__ = [
     "orbit_from_here",
     "orbit_on_arrival",
     "orbit_reach",
+    "passage_room",
     "roll_in",
     "turning_room",
+    "waypoint_room",
 ]

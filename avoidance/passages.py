@@ -14,7 +14,7 @@ from avoidance.detours import fly_round, search_problem
 from avoidance.exact import exact_plan
 from avoidance.known import Known
 from avoidance.ladder import Corners, Plan, Way, widest_way
-from avoidance.orbits import turning_room
+from avoidance.orbits import BENDS, turning_room
 from avoidance.parameters import Parameters
 from avoidance.problem import WaypointProblem
 from avoidance.route_check import Blocked
@@ -109,8 +109,7 @@ def way_with_orbits(gap: Gap, planner: Way, rng: np.random.Generator) -> Decisio
     -----
     The shortest way comes first. If it leads into a narrow passage, so much is kept from what lies on one
     side of it that an orbit fits in there, then on the other side, then on both: work for the exact planner.
-    An intruder is evaded even
-    into a narrow passage.
+    An intruder is evaded even into a narrow passage.
     """
     problem, moving = gap.problem, gap.blocked.threat.moving
     passage = np.array([problem.start, problem.target])
@@ -125,7 +124,7 @@ def way_with_orbits(gap: Gap, planner: Way, rng: np.random.Generator) -> Decisio
         corners = np.array([problem.start, *shortest.waypoints, problem.target])
         passage = corners[: max(trap.leg - gap.begin, 0) + 2]
     for room in _rooms(gap, passage):
-        plan = exact_plan(problem.widened(room))
+        plan = exact_plan(problem, room)
         if plan is not None and gap.trap(plan) is None:
             return gap.way(plan)
     return gap.way(shortest) if shortest is not None and moving else None
@@ -135,7 +134,7 @@ def _rooms(gap: Gap, passage: Floats) -> Iterator[Floats]:
     """What to keep more from each obstacle, so that an orbit fits into a passage, least first [m]."""
     wide = max(turning_room(gap.performance) - gap.parameters.margin, 0.0)
     left = _left_of(passage, gap.problem.centres)
-    corners = 0.5 * gap.performance.turn_radius
+    corners = BENDS * gap.performance.turn_radius
     for room in (wide, wide + corners):
         yield np.where(left, room, 0.0)
         yield np.where(left, 0.0, room)

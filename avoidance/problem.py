@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from avoidance.constraints import (
 from avoidance.cost import path_length, risk
 from avoidance.flown import SEQUENCING_DELAY, as_complex, as_pairs, flown_lines
 from avoidance.geofence import Walls
-from avoidance.geometry import FEW, distances
+from avoidance.geometry import FEW
 from avoidance.parameters import Parameters
 from avoidance.prediction import Intruders, ground_speeds, separation_shortfall
 from avoidance.right_of_way import gives_way, wrong_side
@@ -138,13 +138,6 @@ class WaypointProblem:
         """As `rank`, of points that are known to meet g1 and g2, at a known cost of shape (n,)."""
         violation: Floats = sum(self._on_the_way(points).values(), np.zeros(len(points)))
         return np.where(violation > 0.0, INFEASIBLE + violation, cost)
-
-    def widened(self, room: Floats) -> WaypointProblem:
-        """The same search, keeping `room`, shape (d,), more from each obstacle not nearer to its ends [m]."""
-        ends = np.array([self.start, self.target])
-        most = distances(ends, self.centres).min(axis=0) - 1.0
-        keep = np.maximum(np.minimum(self.keep + room, most), self.keep)
-        return replace(self, keep=keep, keep_waypoint=np.maximum(self.keep_waypoint, keep))
 
     def _safe_waypoint(self, points: Floats) -> Floats:
         required = self.keep if "g1" in self.relaxed else self.keep_waypoint

@@ -12,7 +12,7 @@ from avoidance.free_space import nearest_free
 from avoidance.geofence import FENCE, OPEN, Geofence, Walls
 from avoidance.geometry import point_distances
 from avoidance.known import Circles, Known
-from avoidance.orbits import turning_room
+from avoidance.orbits import passage_room, waypoint_room
 from avoidance.parameters import Parameters
 from avoidance.types import Decision, Ownship, Performance, Replace, Route, Rung, Waypoint
 from avoidance.words import replace_words
@@ -90,7 +90,7 @@ class Replacements:
         waypoint = route.waypoints[index]
         original = self._mission.get(-1 if waypoint.item is None else waypoint.item, waypoint)
         here = (own.north, own.east)
-        wide = circles.keep + (turning_room(self._performance) if waypoint.item in self._wide else 0.0)
+        wide = circles.keep + (self._passage_room() if waypoint.item in self._wide else 0.0)
         passing = np.maximum(np.minimum(wide, point_distances(circles.centres, here) - 1.0), 0.0)
         place = (original.north, original.east)
         point = None
@@ -138,7 +138,13 @@ class Replacements:
 
     def _waypoint_room(self) -> float:
         """Room beyond `keep` that a mission waypoint needs, so that it can be left again."""
-        return self._performance.turn_room if self._parameters.all_obstacles else 0.0
+        if not self._parameters.all_obstacles:
+            return 0.0
+        return waypoint_room(self._performance, self._parameters.margin)
+
+    def _passage_room(self) -> float:
+        """Room beyond `keep` that is needed on both sides of a way in, so that the vehicle can turn round."""
+        return passage_room(self._performance, self._parameters.margin)
 
     def _arriving(self, own: Ownship, waypoint: Waypoint) -> bool:
         """True if the waypoint is reached within the next two seconds anyway."""
@@ -149,5 +155,5 @@ class Replacements:
         """Room beyond `keep` that a stand-in is given, most wanted first."""
         turn = self._performance.turn_room
         if self._parameters.all_obstacles:
-            return (turn, 0.5 * turn)
+            return (self._waypoint_room(), turn, 0.5 * turn)
         return (self._parameters.tolerance - self._parameters.margin, turn)

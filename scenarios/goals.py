@@ -1,9 +1,9 @@
 """Which waypoints could be reached, judged with full knowledge by code that shares nothing with the planner.
 
 A waypoint nearer to an obstacle than its radius + margin + room to turn cannot be flown to and turned away
-from safely: it is replaced by the nearest point that can, or by none. So is one that lies outside the
-geofence, or behind it. Spheres are cut where they are widest within the published altitude tolerance of the
-waypoint.
+from safely: it is replaced by the nearest point that can, or by none. So is one behind a passage too narrow
+to turn round in, and one outside the geofence or behind it. Spheres are cut where they are widest within
+the published altitude tolerance of the waypoint.
 """
 
 from __future__ import annotations
@@ -34,6 +34,8 @@ class ReplacementRule:
     """A waypoint with less room than this beyond the margin is replaced [m]."""
     rooms: tuple[float, ...]
     """Room of the replacement beyond the margin; the first that allows a point [m]."""
+    passage: float = 0.0
+    """A way in that leaves less room than this beyond the margin on both sides counts as shut [m]."""
     altitude_tolerance: float = 0.0
     """The vehicle may be this much above or below a waypoint [m]."""
 
@@ -87,9 +89,9 @@ def goals(
         walls = _walls(obstacles, waypoint.altitude, rule).joined(edges)
         point = None
         if _all_clear(here, walls.sized(walls.radii + rule.needed), fence):
-            point = None if separated(origin, here, walls) else here
+            point = None if separated(origin, here, walls.sized(walls.radii + rule.passage)) else here
         for room in rule.rooms:
-            point = point or nearest_reachable(here, origin, walls, room, fence)
+            point = point or nearest_reachable(here, origin, walls, room, fence, rule.passage)
         shift = 0.0 if point is None else float(np.hypot(point[0] - here[0], point[1] - here[1]))
         found.append(Goal(index, waypoint.north, waypoint.east, point, shift))
     return found
@@ -153,6 +155,7 @@ def nearest_reachable(
     walls: Shapes,
     room: float,
     fence: Sequence[FenceArea] = (),
+    passage: float = 0.0,
 ) -> tuple[float, float] | None:
     """The point nearest to `target` that keeps `room` from all walls and can be reached.
 
@@ -166,6 +169,8 @@ def nearest_reachable(
         What the point itself keeps from them [m].
     fence : sequence of FenceArea, optional
         Where one may fly; its edges are among the walls.
+    passage : float, optional
+        Free room on both sides of a way in [m]; where the point has less, no more than the point has.
 
     Returns
     -------
@@ -179,8 +184,9 @@ def nearest_reachable(
     as near; its foot is then towards the start.
     """
     safe = walls.sized(walls.radii + room)
+    shut = walls.sized(walls.radii + min(passage, room))
     for north, east in _candidates(np.asarray(target, dtype=np.float64), np.asarray(start), safe, fence):
-        if not separated(start, (north, east), walls):
+        if not separated(start, (north, east), shut):
             return north, east
     return None
 

@@ -15,7 +15,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from avoidance import Detour, Hold, Replace, Reroute, Threat, Waypoint
-from avoidance.known import kept_margin
 from avoidance.types import Floats
 from avoidance.yardsticks import length_to_optimum, search_gap
 from offboard.plan_files import PlanFile, write_plan
@@ -24,7 +23,7 @@ from scenarios.fence import geofence_data
 from scenarios.flown import Flown, LoggedDecision
 from scenarios.rally import rally_data
 from scenarios.scenario import OWN, Obstacle
-from scenarios.score import Score
+from scenarios.score import Score, replacement_rule
 from scenarios.target import PREFIX, check_target, followed
 from scenarios.toml_text import to_toml
 from scenarios.track import MovingTrack, Track
@@ -182,6 +181,7 @@ def event_row(event: Event) -> dict[str, Any]:
 
 def run_facts(flown: Flown) -> dict[str, Any]:
     """`run.json`: how the run was made, and where its wall time went."""
+    rule = replacement_rule(flown.parameters, flown.performance)
     live = {} if flown.events is None else {"reckoned_s": [list(span) for span in flown.reckoned]}
     return {
         "scenario": flown.scenario.name,
@@ -193,8 +193,9 @@ def run_facts(flown: Flown) -> dict[str, Any]:
         "time_limit_s": round(flown.scenario.limit, 3),
         "acceptance_radius_m": flown.performance.acceptance_radius,
         "turn_radius_m": round(flown.performance.turn_radius, 3),
-        "turn_room_m": round(flown.performance.turn_room, 3),
-        "margin_m": round(kept_margin(flown.parameters, flown.performance), 3),
+        "margin_m": round(rule.margin, 3),
+        "waypoint_room_m": round(rule.needed, 3),
+        "passage_room_m": round(rule.passage, 3),
         "wall_s": {
             "flight": round(flown.wall.total, 3),
             "avoidance": round(flown.wall.avoidance, 3),

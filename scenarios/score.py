@@ -12,6 +12,7 @@ import numpy as np
 from avoidance import Hold, Performance
 from avoidance.geofence import Walls
 from avoidance.known import ALTITUDE_TOLERANCE, kept_margin
+from avoidance.orbits import passage_room, waypoint_room
 from avoidance.parameters import Parameters
 from avoidance.tangent_graph import shortest_path
 from avoidance.types import Floats
@@ -206,16 +207,19 @@ def approach_summary(approaches: Sequence[Separation]) -> dict[str, Any]:
 def replacement_rule(parameters: Parameters, performance: Performance) -> ReplacementRule:
     """The published margins of a preset.
 
-    By default a waypoint needs RS + margin + room to turn, and so does what replaces it. The paper
+    By default a waypoint needs RS + margin + room to turn and to wait, and so does what replaces it; the way
+    in must be wide enough to turn round in. The paper
     replaces what lies inside the sphere, by a point at RS + tolerance. Both keep their altitude within
     `ALTITUDE_TOLERANCE`.
     """
     margin = kept_margin(parameters, performance)
     turn = performance.turn_room
-    if parameters.all_obstacles:
-        return ReplacementRule(margin, turn, (turn, 0.5 * turn), ALTITUDE_TOLERANCE)
-    rooms = (parameters.tolerance - margin, turn)
-    return ReplacementRule(margin, 0.0, rooms, ALTITUDE_TOLERANCE)
+    if not parameters.all_obstacles:
+        rooms = (parameters.tolerance - margin, turn)
+        return ReplacementRule(margin, 0.0, rooms, altitude_tolerance=ALTITUDE_TOLERANCE)
+    needed = waypoint_room(performance, margin)
+    passage = 0.0 if parameters.pop_up_room is None else passage_room(performance, margin)
+    return ReplacementRule(margin, needed, (needed, turn, 0.5 * turn), passage, ALTITUDE_TOLERANCE)
 
 
 def waypoint_fates(track: Track, targets: Sequence[Goal], radius: float) -> list[Fate]:

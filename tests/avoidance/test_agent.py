@@ -9,6 +9,7 @@ from avoidance import Decision, Detour, Keep, RadarScan, Replace, Reroute, Resum
 from avoidance.agent import Agent
 from avoidance.flown import flown_segments
 from avoidance.geometry import segments_clearance
+from avoidance.orbits import waypoint_room
 from avoidance.parameters import DEFAULT, PRESETS
 from avoidance.prediction import route_separation
 from tests.avoidance.worlds import PERFORMANCE, intruders, ownship, route, scan
@@ -63,7 +64,9 @@ def test_a_waypoint_inside_a_sphere_is_replaced_by_the_nearest_safe_point() -> N
     assert decision.waypoint.item == 1
     assert decision.waypoint.moved
     away = np.hypot(decision.waypoint.north - 8000.0, decision.waypoint.east - 200.0)
-    assert away == pytest.approx(1000.0 + DEFAULT.margin + PERFORMANCE.turn_room, abs=1.5)
+    assert away == pytest.approx(
+        1000.0 + DEFAULT.margin + waypoint_room(PERFORMANCE, DEFAULT.margin), abs=1.5
+    )
 
 
 def test_a_walled_in_waypoint_is_not_flown_into() -> None:

@@ -7,13 +7,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from avoidance import Ownship, Route
+from avoidance import Ownship, Performance, Route
+from avoidance.agent import Agent
 from avoidance.contingency import first_trap, longest_stretch, room_outside
-from avoidance.known import Known
-from avoidance.orbits import orbit_from_here, orbit_on_arrival, orbit_reach, turning_room
+from avoidance.known import Known, kept_margin
+from avoidance.orbits import (
+    orbit_from_here,
+    orbit_on_arrival,
+    orbit_reach,
+    passage_room,
+    turning_room,
+    waypoint_room,
+)
 from avoidance.parameters import DEFAULT, PAPER
 from tests.avoidance.test_route_check import known
-from tests.avoidance.worlds import PERFORMANCE, ownship, route
+from tests.avoidance.worlds import PERFORMANCE, ownship, route, scan
 
 
 def corridor(half_width: float, length: float = 6000.0, begin: float = 3000.0) -> list[tuple[float, float]]:
@@ -74,6 +82,17 @@ def test_a_trap_tells_where_it_begins_and_between_what() -> None:
     assert len(found.threat.ids) == 2
 
 
+def test_a_leg_that_is_cut_hides_no_trap_on_the_way_to_it() -> None:
+    walls = corridor(60.0, length=3000.0)
+    way = route((8000.0, 0.0), (40_000.0, 0.0))
+    agent = Agent(PERFORMANCE)
+    for second in range(4):
+        decision = agent.decide(ownship(time=second), way, scan([*walls, (9500.0, 0.0)], time=second))
+    assert decision.threat is not None
+    assert decision.threat.leg == 0
+    assert decision.threat.narrow
+
+
 @pytest.mark.parametrize(("more", "trap"), [(0.5, False), (-25.0, True)])
 @pytest.mark.parametrize("turn", [10.0, 12.5, 15.0])
 def test_beside_a_sphere_an_orbit_is_free_on_the_other_side_as_soon_as_there_is_room(
@@ -94,6 +113,30 @@ def test_an_orbit_on_arrival_needs_room_on_one_side(half_width: float, room: boo
     own, way = ownship(), route((6000.0, 0.0))
     around = seen(corridor(half_width), own, way)
     assert orbit_on_arrival((0.0, 0.0), way.waypoints[0], around, PERFORMANCE) == room
+
+
+@pytest.mark.parametrize(
+    "performance", [PERFORMANCE, replace(PERFORMANCE, wind_bound=12.0, tracking_error=10.0)]
+)
+def test_where_a_waypoint_may_lie_an_orbit_is_free_on_arrival_from_everywhere(
+    performance: Performance,
+) -> None:
+    margin = kept_margin(DEFAULT, performance)
+    away = 1000.0 + margin + waypoint_room(performance, margin) + 0.1
+    own, way = ownship(), route((0.0, 0.0))
+    around = seen([(away * np.cos(b), away * np.sin(b)) for b in np.arange(0.0, 6.0, 0.5)], own, way)
+    for bearing in np.arange(0.0, 6.2, 0.1):
+        before = (-5000.0 * np.cos(bearing), -5000.0 * np.sin(bearing))
+        assert orbit_on_arrival(before, way.waypoints[0], around, performance)
+
+
+@pytest.mark.parametrize(("more", "trap"), [(1.0, False), (-40.0, True)])
+def test_a_way_in_with_room_on_both_sides_is_no_trap_along_one_of_them(more: float, trap: bool) -> None:
+    room = DEFAULT.margin + passage_room(PERFORMANCE, DEFAULT.margin) + more
+    aside = room - DEFAULT.margin
+    own, way = ownship(east=-aside), route((40_000.0, -aside), origin=(0.0, -aside))
+    found = first_trap(own, way, seen(corridor(room), own, way), PERFORMANCE, DEFAULT)
+    assert (found is not None) == trap
 
 
 def test_no_trap_without_the_promise() -> None:

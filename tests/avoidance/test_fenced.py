@@ -14,7 +14,7 @@ from avoidance.agent import Agent
 from avoidance.fenced_space import nearest_within
 from avoidance.geofence import FenceArea, Geofence, Walls
 from avoidance.known import within_fence
-from avoidance.orbits import orbit_from_here
+from avoidance.orbits import orbit_from_here, waypoint_room
 from avoidance.parameters import DEFAULT
 from avoidance.tangent_graph import shortest_path
 from tests.avoidance.test_route_check import known
@@ -138,7 +138,7 @@ def test_a_waypoint_outside_the_fence_or_at_its_edge_is_replaced_by_the_nearest_
     decisions, way = fly_scans(fence, route(place, (12_000.0, 0.0)), [])
     assert isinstance(decisions[0], Replace)
     assert "the geofence" in decisions[0].why
-    room = DEFAULT.margin + PERFORMANCE.turn_room
+    room = DEFAULT.margin + waypoint_room(PERFORMANCE, DEFAULT.margin)
     assert (way.waypoints[0].north, way.waypoints[0].east) == pytest.approx((9000.0, 5000.0 - room), abs=0.1)
 
 

@@ -62,6 +62,19 @@ def test_an_obstacle_within_the_altitude_tolerance_counts(altitude: float):
     assert not goal.replaced
 
 
+def test_behind_a_narrow_way_in_a_waypoint_moves_outside():
+    """Of a ring with a gap 2.3 times 134 m wide: it counts as shut where 140 m are needed on both sides."""
+    wall = [obstacle(n, e) for n, e in ring(4000.0, 16)]
+    ajar = 2.0 * math.asin((1000.0 + 1.15 * 134.0) / 4000.0)
+    pair = [obstacle(-4000.0 * math.cos(a), 4000.0 * math.sin(a)) for a in (-0.5 * ajar, 0.5 * ajar)]
+    wall = [o for o in wall if o.north > -3000.0] + pair
+    mission = [START, Point(0.0, 0.0, 200.0)]
+    (_, goal) = goals(mission, wall, replace(RULE, passage=84.0))
+    assert not goal.replaced
+    (_, goal) = goals(mission, wall, replace(RULE, needed=120.0, rooms=(120.0,), passage=120.0))
+    assert math.hypot(*goal.point) > 4000.0
+
+
 def test_an_enclosed_waypoint_moves_outside_its_ring():
     wall = [obstacle(n, e) for n, e in ring(4000.0, 16)]
     (_, goal) = goals([START, Point(0.0, 0.0, 200.0)], wall, RULE)
