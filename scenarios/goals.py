@@ -35,7 +35,9 @@ class ReplacementRule:
     rooms: tuple[float, ...]
     """Room of the replacement beyond the margin; the first that allows a point [m]."""
     passage: float = 0.0
-    """A way in that leaves less room than this beyond the margin on both sides counts as shut [m]."""
+    """A way in that leaves less room than this beyond the margin on both sides is narrow [m] ..."""
+    stretch: float = 0.0
+    """... and counts as shut if it is so for longer than this [m]."""
     altitude_tolerance: float = 0.0
     """The vehicle may be this much above or below a waypoint [m]."""
 
@@ -89,9 +91,9 @@ def goals(
         walls = _walls(obstacles, waypoint.altitude, rule).joined(edges)
         point = None
         if _all_clear(here, walls.sized(walls.radii + rule.needed), fence):
-            point = None if separated(origin, here, walls.sized(walls.radii + rule.passage)) else here
+            point = None if separated(origin, here, _shut(walls, rule)) else here
         for room in rule.rooms:
-            point = point or nearest_reachable(here, origin, walls, room, fence, rule.passage)
+            point = point or nearest_reachable(here, origin, walls, room, fence, _shut(walls, rule, room))
         shift = 0.0 if point is None else float(np.hypot(point[0] - here[0], point[1] - here[1]))
         found.append(Goal(index, waypoint.north, waypoint.east, point, shift))
     return found
@@ -122,6 +124,17 @@ def _walls(obstacles: Sequence[Obstacle], altitude: float, rule: ReplacementRule
     """What no way at an altitude may enter of the spheres."""
     centres, radii = discs(obstacles, altitude, rule.altitude_tolerance)
     return Shapes.discs(centres, radii + rule.margin)
+
+
+def _shut(walls: Shapes, rule: ReplacementRule, room: float = math.inf) -> Shapes:
+    """The walls so wide that ways too narrow for too long are shut; never wider than by `room` [m].
+
+    Between circles of radii a and b a way is wider by s²/2 (1/a + 1/b) a distance s before and behind.
+    """
+    widens = np.divide(rule.stretch**2, 8.0 * walls.radii, where=walls.radii > 0.0, out=np.zeros(len(walls)))
+    straight = (walls.starts != walls.ends).any(axis=1)
+    more = np.maximum(rule.passage - np.where(straight, 0.0, widens), 0.0)
+    return walls.sized(walls.radii + np.minimum(more, room))
 
 
 def _all_clear(place: tuple[float, float], shapes: Shapes, fence: Sequence[FenceArea]) -> bool:
@@ -155,7 +168,7 @@ def nearest_reachable(
     walls: Shapes,
     room: float,
     fence: Sequence[FenceArea] = (),
-    passage: float = 0.0,
+    shut: Shapes | None = None,
 ) -> tuple[float, float] | None:
     """The point nearest to `target` that keeps `room` from all walls and can be reached.
 
@@ -169,8 +182,8 @@ def nearest_reachable(
         What the point itself keeps from them [m].
     fence : sequence of FenceArea, optional
         Where one may fly; its edges are among the walls.
-    passage : float, optional
-        Free room on both sides of a way in [m]; where the point has less, no more than the point has.
+    shut : Shapes, optional
+        The walls, wider where ways between them are too narrow.
 
     Returns
     -------
@@ -184,9 +197,8 @@ def nearest_reachable(
     as near; its foot is then towards the start.
     """
     safe = walls.sized(walls.radii + room)
-    shut = walls.sized(walls.radii + min(passage, room))
     for north, east in _candidates(np.asarray(target, dtype=np.float64), np.asarray(start), safe, fence):
-        if not separated(start, (north, east), shut):
+        if not separated(start, (north, east), walls if shut is None else shut):
             return north, east
     return None
 

@@ -196,6 +196,7 @@ def run_facts(flown: Flown) -> dict[str, Any]:
         "margin_m": round(rule.margin, 3),
         "waypoint_room_m": round(rule.needed, 3),
         "passage_room_m": round(rule.passage, 3),
+        "narrow_stretch_m": round(rule.stretch, 3),
         "wall_s": {
             "flight": round(flown.wall.total, 3),
             "avoidance": round(flown.wall.avoidance, 3),

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from avoidance import Hold, Performance
+from avoidance.contingency import longest_stretch
 from avoidance.geofence import Walls
 from avoidance.known import ALTITUDE_TOLERANCE, kept_margin
 from avoidance.orbits import passage_room, waypoint_room
@@ -208,7 +209,7 @@ def replacement_rule(parameters: Parameters, performance: Performance) -> Replac
     """The published margins of a preset.
 
     By default a waypoint needs RS + margin + room to turn and to wait, and so does what replaces it; the way
-    in must be wide enough to turn round in. The paper
+    in must not be too narrow to turn round in for long. The paper
     replaces what lies inside the sphere, by a point at RS + tolerance. Both keep their altitude within
     `ALTITUDE_TOLERANCE`.
     """
@@ -218,8 +219,11 @@ def replacement_rule(parameters: Parameters, performance: Performance) -> Replac
         rooms = (parameters.tolerance - margin, turn)
         return ReplacementRule(margin, 0.0, rooms, altitude_tolerance=ALTITUDE_TOLERANCE)
     needed = waypoint_room(performance, margin)
-    passage = 0.0 if parameters.pop_up_room is None else passage_room(performance, margin)
-    return ReplacementRule(margin, needed, (needed, turn, 0.5 * turn), passage, ALTITUDE_TOLERANCE)
+    passage, stretch = 0.0, 0.0
+    if parameters.pop_up_room is not None:
+        passage = passage_room(performance, margin)
+        stretch = longest_stretch(performance, parameters.pop_up_room)
+    return ReplacementRule(margin, needed, (needed, turn, 0.5 * turn), passage, stretch, ALTITUDE_TOLERANCE)
 
 
 def waypoint_fates(track: Track, targets: Sequence[Goal], radius: float) -> list[Fate]:

@@ -73,6 +73,9 @@ def test_behind_a_narrow_way_in_a_waypoint_moves_outside():
     assert not goal.replaced
     (_, goal) = goals(mission, wall, replace(RULE, needed=120.0, rooms=(120.0,), passage=120.0))
     assert math.hypot(*goal.point) > 4000.0
+    short = replace(RULE, needed=120.0, rooms=(120.0,), passage=120.0, stretch=600.0)
+    (_, goal) = goals(mission, wall, short)  # 240 m wide within 250 m from the narrowest
+    assert not goal.replaced
 
 
 def test_an_enclosed_waypoint_moves_outside_its_ring():
