@@ -247,11 +247,12 @@ class Agent:
         if hill is None:
             return None
         gap = Gap.of(own, route, known, hill, self._performance, self._parameters)
-        if self._sides.open_ahead(gap.problem):
+        if not self._sides.end_in_view(gap.problem):
             self._retry_at = own.time + RETRY
             return None
-        self._sides.settled()
-        way = way_with_orbits(gap, self._sides.way(self._way), self._rng)
+        all_known = self._sides.expected(route, known) is None
+        planner = self._way if all_known else self._sides.way(self._way)
+        way = way_with_orbits(gap, planner, self._rng)
         if way is None or way.route is None or gap.saving(way) < SMALL:
             return None
         self._sides.chosen(gap.problem, hill, gap.taken(way))

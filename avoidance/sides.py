@@ -53,6 +53,7 @@ class Sides:
         self._hill: Floats = np.empty((0, 2))
         self._side = 0.0
         self._expected: Blocked | None = None
+        self._open = 0
         self._put_in: Corners = ()
 
     def look(self, own: Ownship, scan: RadarScan) -> None:
@@ -86,10 +87,11 @@ class Sides:
         self._hill = problem.centres[problem.avoided]
         self._side = side_of(problem, waypoints)
         self._put_in = waypoints
-        self._expected = blocked if self.open_ahead(problem) else None
+        self._open = len(self._open_ends(problem))
+        self._expected = blocked if self._open else None
 
     def expected(self, route: Route, known: Known) -> Blocked | None:
-        """What the route goes round in the belief that there is more of it than is known; None if nothing."""
+        """What the route goes round in the belief that there is more of it, at either end, than is known."""
         if self._expected is None or len(known.intruders):
             return None
         for leg, waypoint in enumerate(route.waypoints):
@@ -99,9 +101,13 @@ class Sides:
         self._expected = None
         return None
 
-    def settled(self) -> None:
-        """Nothing more is expected than what is known."""
-        self._expected = None
+    def end_in_view(self, problem: WaypointProblem) -> bool:
+        """True once for each end of the hill that has come into view since the way was chosen."""
+        still = len(self._open_ends(problem))
+        fewer, self._open = still < self._open, still
+        if not still:
+            self._expected = None
+        return fewer
 
     def extended(self, problem: WaypointProblem) -> WaypointProblem:
         """The search with both ends of the hill avoided going on where nobody has looked; itself if none."""
@@ -121,14 +127,6 @@ class Sides:
             keep=np.concatenate([problem.keep, problem.keep[rows]]),
             keep_waypoint=np.concatenate([problem.keep_waypoint, problem.keep_waypoint[rows]]),
         )
-
-    def open_ahead(self, problem: WaypointProblem) -> bool:
-        """True while the end of the hill on the side chosen lies where nobody has looked."""
-        ends = self._open_ends(problem)
-        if not ends:
-            return False
-        middle = problem.centres[problem.avoided].mean(axis=0)
-        return any(_across(problem, problem.centres[row] - middle) * self._side > 0.0 for row, _ in ends)
 
     def _open_ends(self, problem: WaypointProblem) -> list[tuple[int, Floats]]:
         """Ends of the hill avoided, as rows of the problem, with the centres expected behind each."""

@@ -13,7 +13,8 @@ from avoidance.parameters import DEFAULT
 from avoidance.problem import WaypointProblem
 from avoidance.route_check import Blocked
 from avoidance.sides import Sides, barred, side_of
-from avoidance.types import Decision, Floats, Ownship, Threat, Waypoint
+from avoidance.types import Decision, Floats, Ownship, Route, Threat, Waypoint
+from tests.avoidance.test_route_check import known
 from tests.avoidance.worlds import PERFORMANCE, ownship, problem, route, scan
 
 RANGE = 10_000.0
@@ -105,7 +106,22 @@ def test_a_hill_whose_ends_were_seen_is_what_it_is() -> None:
 def test_a_hill_that_is_not_known_any_more_has_no_end() -> None:
     """Tracks die, and radars rename them: nothing is left of what was gone round."""
     question = replace(problem([(9000.0, 0.0)]), avoided=np.empty(0, dtype=np.int64))
-    assert not looking((0.0, 0.0)).open_ahead(question)
+    sides = looking((0.0, 0.0))
+    assert sides.extended(question) is question
+    assert not sides.end_in_view(question)
+
+
+def test_each_end_that_comes_into_view_is_told_once() -> None:
+    """On whichever side: behind the end that was feared to be far there may be the shorter way."""
+    question, sides = hill(wall(-7500.0, 7500.0)), looking((0.0, 0.0))
+    sides.chosen(question, blocked(), ((9000.0, 9000.0),))
+    way = Route(Waypoint(0.0, 0.0, 200.0), (Waypoint(9000.0, 9000.0, 200.0),))
+    assert not sides.end_in_view(question)
+    for east, last in ((-9000.0, False), (9000.0, True)):
+        sides.look(ownship(7000.0, east), scan([(0.0, 0.0)]))
+        assert sides.end_in_view(question)
+        assert not sides.end_in_view(question)
+        assert (sides.expected(way, known([(9000.0, 0.0)], ownship(), way)) is None) == last
 
 
 def test_a_short_hill_is_what_it_is() -> None:
