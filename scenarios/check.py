@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import numpy as np
 
 from scenarios.errors import Problem
-from scenarios.fence import allowed
+from scenarios.fence import Place, allowed
 from scenarios.scenario import LEAST_AIR_MARGIN, TRAFFIC_VIOLATION_RADIUS, Point, Scenario
 from scenarios.schema import ScenarioTable
 from scenarios.user_plant import plant_problems
 
 Key = Callable[..., str]
+LEAST_BREADTH = 1.0
+"""The corners of a geofence's polygon lie further than this from being on one line [m]."""
 AIRCRAFT_SPEEDS = (12.0, 22.0)
 """Airspeeds the aircraft model is made for [m/s]."""
 
@@ -29,6 +31,7 @@ def semantic_problems(scenario: Scenario, table: ScenarioTable, key: Key) -> lis
         *_traffic(scenario, key),
         *_vehicles(scenario, key),
         *_fence(scenario, key),
+        *_rally(scenario, key),
         *_random(scenario),
         *_airspeeds(scenario, key),
         *_aircraft(scenario),
@@ -119,6 +122,12 @@ def _vehicles(scenario: Scenario, key: Key) -> list[Problem]:
 
 def _fence(scenario: Scenario, key: Key) -> list[Problem]:
     problems = []
+    for index, area in enumerate(scenario.geofence):
+        if area.corners and _breadth(area.corners) < LEAST_BREADTH:
+            message = "encloses nothing: its corners lie on one line, or on one spot"
+            problems.append(Problem(key("geofence", index, "polygon"), None, message))
+    if problems:
+        return problems
     for index, member in enumerate(scenario.fleet):
         outside = [
             number
@@ -132,6 +141,20 @@ def _fence(scenario: Scenario, key: Key) -> list[Problem]:
                 which = f"waypoints {', '.join(map(str, outside))} lie"
             problems.append(Problem(place, None, f"{which} outside the geofence"))
     return problems
+
+
+def _rally(scenario: Scenario, key: Key) -> list[Problem]:
+    return [
+        Problem(key("rally", index), None, "lies outside the geofence, where nobody may wait")
+        for index, point in enumerate(scenario.rally)
+        if not allowed(scenario.geofence, np.array([[point.north, point.east]]))[0]
+    ]
+
+
+def _breadth(corners: Sequence[Place]) -> float:
+    """How far corners lie off the line that fits them best, root of the summed squares [m]."""
+    off = np.array(corners) - np.mean(corners, axis=0)
+    return float(np.linalg.svd(off, compute_uv=False)[-1])
 
 
 def _apart(a: Point, b: Point) -> float:

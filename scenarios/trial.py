@@ -176,7 +176,7 @@ def feasible(flown: Flown) -> bool:
     scenario = flown.scenario
     start = scenario.mission[0]
     rule = replacement_rule(flown.parameters, flown.performance)
-    centres, radii = discs(scenario.obstacles, start.altitude)
+    centres, radii = discs(scenario.obstacles, start.altitude, rule.altitude_tolerance)
     walls = Shapes.discs(centres, radii + rule.margin)
     if separated((start.north, start.east), (-FAR_AWAY, -FAR_AWAY), walls):
         return False

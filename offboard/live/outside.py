@@ -157,7 +157,10 @@ class Serial:
         """See `Outside`."""
         try:
             self._port.write(data)
-        except OSError:  # the reader will see it, too
+        except (
+            OSError,
+            TypeError,
+        ):  # gone, or closed meanwhile (its handle is None then): the reader will see
             return
 
     def close(self) -> None:

@@ -90,6 +90,15 @@ def test_a_fence_survives_its_file_and_mistakes_are_told():
         parse(FENCED.replace("north_m = 3000.0", "north_m = 1600.0"))
     with pytest.raises(ScenarioError, match="waypoints 1, 2 lie outside the geofence"):
         parse(FENCED.replace("radius_m = 300.0", "radius_m = 30000.0"))
+    rally = "\n[[rally]]\nnorth_m = 30000.0\neast_m = 0.0\naltitude_m = 200.0\n"
+    with pytest.raises(ScenarioError, match="rally #1: lies outside the geofence"):
+        parse(FENCED + rally)
+    corners = "polygon = [" + ", ".join(f"{{north_m = {n}.0, east_m = {2 * n}.0}}" for n in (0, 7, 9)) + "]"
+    thin = FENCED.replace("centre = {north_m = 1500.0, east_m = 0.0}", corners).replace(
+        "radius_m = 300.0", ""
+    )
+    with pytest.raises(ScenarioError, match="geofence #2, polygon: encloses nothing"):
+        parse(thin)
     globe = FENCED.replace(
         "centre = {north_m = 1500.0, east_m = 0.0}", "centre = {latitude_deg = 14.4, longitude_deg = 76.6}"
     )
