@@ -166,7 +166,8 @@ class Agent:
         if replaced is not None:
             return replaced
         known = keep_what_can_be_kept(known, own, self._performance)
-        blocked = first_blocked_leg(own, route, known, self._performance)
+        slack = 0.0 if self._vigil.under_way else 1.0  # who circles would have to take the route up
+        blocked = first_blocked_leg(own, route, known, self._performance, slack=slack)
         until = route if blocked is None else replace(route, waypoints=route.waypoints[: blocked.leg])
         blocked = first_trap(own, until, known, self._performance, self._parameters) or blocked
         if blocked is None:

@@ -23,7 +23,7 @@ SEQUENCING_DELAY = 1.0
 
 
 def flown_segments(
-    points: Floats, course: float | None, performance: Performance
+    points: Floats, course: float | None, performance: Performance, *, begun: bool = False
 ) -> tuple[Floats, Floats, Floats]:
     """Segments whose hull contains the flown curve of each polyline.
 
@@ -36,6 +36,8 @@ def flown_segments(
         Direction of travel at the first point [rad]; None if the vehicle comes along the first leg.
     performance : Performance
         Turn radius, roll time, acceptance radius and capture distance.
+    begun : bool
+        True for what is being flown already: the first turn begins at once.
 
     Returns
     -------
@@ -52,12 +54,12 @@ def flown_segments(
     end of the incoming leg, and from there to the exit point. After a change of target the turn begins
     where the vehicle is: it runs on by R tan(dchi/2) plus the roll distance and joins the leg from outside.
     """
-    starts, ends, extra = flown_lines(as_complex(points), course, performance)
+    starts, ends, extra = flown_lines(as_complex(points), course, performance, begun=begun)
     return as_pairs(starts), as_pairs(ends), extra
 
 
 def flown_lines(
-    corners: Complexes, course: float | None, performance: Performance
+    corners: Complexes, course: float | None, performance: Performance, *, begun: bool = False
 ) -> tuple[Complexes, Complexes, Floats]:
     """As `flown_segments`, of corners of shape (n, k) as complex numbers, with ends of shape (n, m) [m]."""
     legs = corners[:, 1:] - corners[:, :-1]
@@ -79,7 +81,8 @@ def flown_lines(
         ends[:, bends[0]] = ends[:, bends[1]] = bend + capture * after
         starts[:, bends[1]], extra[:, bends[1]] = _overshoot(bend, before, product, capture, performance)
     if course is not None:
-        first = _first_turn(corners[:, 0], units[:, 0], lengths[:, 0], course, performance)
+        delay = 0.0 if begun else max(SEQUENCING_DELAY, performance.edit_time) * performance.airspeed
+        first = _first_turn(corners[:, 0], units[:, 0], lengths[:, 0], course, delay, performance)
         starts[:, -2], ends[:, -2] = corners[:, 0], first[0]
         starts[:, -1], ends[:, -1], extra[:, -1] = first[1:]
     return starts, ends, extra
@@ -176,15 +179,14 @@ def _turn(
 
 
 def _first_turn(
-    start: Complexes, unit: Complexes, length: Floats, course: float, performance: Performance
+    start: Complexes, unit: Complexes, length: Floats, course: float, delay: float, performance: Performance
 ) -> tuple[Complexes, Complexes, Complexes, Floats | float]:
-    """The turn on to the first leg from the present course, all of shape (n,).
+    """The turn on to the first leg from the present course, begun after `delay` [m], all of shape (n,).
 
     It begins so far ahead of the start as the first result is; then the segment of the way on to the leg,
     and the room about that.
     """
     ahead = complex(math.cos(course), math.sin(course))
-    delay = max(SEQUENCING_DELAY, performance.edit_time) * performance.airspeed
     product = ahead.conjugate() * unit
     begin, room = _turn(start + delay * ahead, ahead, product, performance)
     sharp = product.real < 0.0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -86,9 +86,7 @@ def first_blocked_leg(
         return None
     points = remaining_points(own, route, performance.tracking_error, performance.capture_distance)
     inserted = points.shape[1] - 1 - len(route.waypoints)
-    if slack > 0.0 and performance.edit_time > 0.0:
-        performance = replace(performance, edit_time=0.0)  # what is flown already needs no edit
-    starts, ends, extra = flown_segments(points, own.course, performance)
+    starts, ends, extra = flown_segments(points, own.course, performance, begun=slack > 0.0)
     legs = _leg_of_segment(points.shape[1], inserted)
     first: Blocked | None = None
     for band, owners in altitude_bands(own, route).items():

@@ -60,3 +60,10 @@ def test_a_turn_from_the_present_course_runs_on_first() -> None:
 def test_turn_angle_is_unsigned() -> None:
     north, west = np.array([[1.0, 0.0]]), np.array([[0.0, -1.0]])
     assert turn_angle(north, west)[0] == pytest.approx(math.pi / 2)
+
+
+def test_a_turn_that_has_begun_is_not_put_off() -> None:
+    """By the second that a vehicle may take to notice a waypoint, or the time of an edit."""
+    route, slow = np.array([[[0.0, 0.0], [500.0, 500.0]]]), replace(PERFORMANCE, edit_time=2.0)
+    (later, _, _), (now, _, _) = (flown_segments(route, 0.0, slow, begun=begun) for begun in (False, True))
+    assert later[0, -1, 0] - now[0, -1, 0] == pytest.approx(2.0 * PERFORMANCE.airspeed)
