@@ -248,11 +248,14 @@ class Agent:
         if hill is None:
             return None
         gap = Gap.of(own, route, known, hill, self._performance, self._parameters)
-        if not self._sides.end_in_view(gap.problem):
-            self._retry_at = own.time + RETRY
+        left = self._sides.ends_left(gap.problem)
+        if left != 0:
+            self._retry_at = (
+                own.time + RETRY
+            )  # an end comes into view by looking, whether or not anything is new
+        if left is None:
             return None
-        all_known = self._sides.expected(route, known) is None
-        planner = self._way if all_known else self._sides.way(self._way)
+        planner = self._sides.way(self._way) if left else self._way
         way = way_with_orbits(gap, planner, self._rng)
         if way is None or way.route is None or gap.saving(way) < SMALL:
             return None

@@ -210,10 +210,10 @@ def exact_route(
 ) -> Corners | None:
     """Waypoints of the shortest path round everything known that can be flown, or None if over `longest` [m].
 
-    The path keeps `room`, shape (d,) or one for all, more from each obstacle [m]; the turns at its ends need
-    not. First with what leaves room for orbits beside; where that shuts the way, with hardly any. Intruders
-    are not considered. No waypoints at all: the straight way leads out of a margin that the vehicle is
-    already inside.
+    The path keeps `room`, shape (d,) or one for all, more from each obstacle that is not nearer to its ends
+    [m]; of the flown curve, with its turns, that is not asked. First with what leaves room for orbits beside;
+    where that shuts the way, with hardly any. Intruders are not considered. No waypoints at all: the straight
+    way leads out of a margin that the vehicle is already inside.
     """
     performance = problem.performance
     beside = room_outside(performance, LARGEST_CORNER) - problem.parameters.margin
@@ -227,13 +227,17 @@ def exact_route(
 def _as_flown(problem: WaypointProblem, keep: Floats, pad: float, longest: float) -> Corners | None:
     """The same round circles of radii `keep`, shape (d,), and walls wider by `pad` [m].
 
-    Those that the flown curve, with its turns, comes too near to are widened further until it is clear.
+    Those that the flown curve, with its turns, comes too near to are widened further until it is clear; for
+    walls all are, as the circles about their ends must not be smaller.
     """
     free_start = point_distances(problem.centres, problem.start) - 0.5
     free_target = point_distances(problem.centres, problem.target) - 0.5
-    room = problem.walls.room + pad
+    room, last = problem.walls.room + pad, None
     for _ in range(ROUNDS):
         radii = np.maximum(np.minimum(np.minimum(keep, free_start), free_target), 0.0)
+        if last is not None and room == last[1] and np.array_equal(radii, last[0]):
+            return None  # what would have to be wider begins or ends here
+        last = (radii, room)
         walls = replace(problem.walls, room=room)
         path = shortest_path(problem.start, problem.target, problem.centres, radii, walls, longest)
         if path is None:
@@ -242,8 +246,9 @@ def _as_flown(problem: WaypointProblem, keep: Floats, pad: float, longest: float
         lacking, outside = _shortfalls(problem, corners)
         if not lacking.any() and outside <= 0.0:
             return tuple((float(point[0]), float(point[1])) for point in corners[1:-1])
-        keep = keep + np.where(lacking > 0.0, 2.0 * lacking + 1.0, 0.0)
-        room += 2.0 * outside + 1.0 if outside > 0.0 else 0.0
+        wider = 2.0 * outside + 1.0 if outside > 0.0 else 0.0
+        keep = keep + np.maximum(np.where(lacking > 0.0, 2.0 * lacking + 1.0, 0.0), wider)
+        room += wider
     return None
 
 

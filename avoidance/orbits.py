@@ -18,6 +18,8 @@ SPACING = 25.0
 """Distance between the points of a route at which an orbit is looked for [m]."""
 BENDS = 0.5
 """In a bend of a passage an orbit needs so much more room, in turn radii."""
+LEFT_ALONE = 1.0
+"""A waypoint that lacks no more than this of its room is left where it is [m]."""
 SIDES = np.array([1.0, -1.0])
 """Clockwise seen from above, anticlockwise."""
 
@@ -58,13 +60,13 @@ def waypoint_room(performance: Performance, margin: float) -> float:
     """What a waypoint needs beyond the margin from every sphere, so that it can be left again [m].
 
     Room to turn there, and for an orbit wherever the arrival is acted upon, on whatever course the vehicle
-    comes: there it can wait, and leave in any direction.
+    comes: there it can wait, and leave in any direction. `LEFT_ALONE` of it may be lacking.
     """
     roll = roll_in(performance)
     ahead = max(_acted_upon(performance) + roll, performance.acceptance_radius - roll)
     swing = math.hypot(TIGHT * performance.turn_radius, ahead)
     orbit = swing + orbit_reach(performance) + 2.0 * performance.tracking_error
-    return max(performance.turn_room, orbit - margin)
+    return max(performance.turn_room, orbit + LEFT_ALONE - margin)
 
 
 def passage_room(performance: Performance, margin: float) -> float:
@@ -158,6 +160,8 @@ def _clearance(points: Floats, circles: Circles, walls: Walls) -> Floats:
 
 
 __all__ = [
+    "BENDS",
+    "LEFT_ALONE",
     "SPACING",
     "TIGHT",
     "WIDE",

@@ -107,9 +107,9 @@ def way_with_orbits(gap: Gap, planner: Way, rng: np.random.Generator) -> Decisio
 
     Notes
     -----
-    The shortest way comes first. If it leads into a narrow passage, so much is kept from what lies on one
-    side of it that an orbit fits in there, then on the other side, then on both: work for the exact planner.
-    An intruder is evaded even into a narrow passage.
+    The shortest way comes first (instead of a narrow passage, the exact planner's). If it leads into a narrow
+    passage, so much is kept from what lies on one side of it that an orbit fits in there, then on the other
+    side, then on both: work for the exact planner. An intruder is evaded even into a narrow passage.
     """
     problem, moving = gap.problem, gap.blocked.threat.moving
     passage = np.array([problem.start, problem.target])
@@ -123,7 +123,8 @@ def way_with_orbits(gap: Gap, planner: Way, rng: np.random.Generator) -> Decisio
             return gap.way(shortest)
         corners = np.array([problem.start, *shortest.waypoints, problem.target])
         passage = corners[: max(trap.leg - gap.begin, 0) + 2]
-    for room in _rooms(gap, passage):
+    rooms = [*([np.zeros(len(problem.keep))] if shortest is None else []), *_rooms(gap, passage)]
+    for room in rooms:
         plan = exact_plan(problem, room)
         if plan is not None and gap.trap(plan) is None:
             return gap.way(plan)

@@ -12,7 +12,7 @@ from avoidance.free_space import nearest_free
 from avoidance.geofence import FENCE, OPEN, Geofence, Walls
 from avoidance.geometry import point_distances
 from avoidance.known import Circles, Known
-from avoidance.orbits import passage_room, waypoint_room
+from avoidance.orbits import LEFT_ALONE, passage_room, waypoint_room
 from avoidance.parameters import Parameters
 from avoidance.types import Decision, Ownship, Performance, Replace, Route, Rung, Waypoint
 from avoidance.words import replace_words
@@ -67,7 +67,7 @@ class Replacements:
                 circles[height] = known.circles(height, height)
             near = circles[height]
             distance = point_distances(near.centres, (waypoint.north, waypoint.east))
-            unsafe = np.flatnonzero(distance < near.keep + room - 1.0)
+            unsafe = np.flatnonzero(distance < near.keep + room - LEFT_ALONE)
             unsafe = unsafe[np.argsort(distance[unsafe], kind="stable")]
             reconsider = waypoint.moved and self._reconsidered != version
             fenced = self._too_near_to_fence(waypoint, room)
@@ -134,7 +134,7 @@ class Replacements:
         if not len(self._geofence.walls):
             return False
         gap = float(Walls(self._geofence.walls).clearance(place, place)[0])
-        return gap < self._parameters.margin + room - 1.0 or not self._geofence.allows(place)[0]
+        return gap < self._parameters.margin + room - LEFT_ALONE or not self._geofence.allows(place)[0]
 
     def _waypoint_room(self) -> float:
         """Room beyond `keep` that a mission waypoint needs, so that it can be left again."""

@@ -101,13 +101,18 @@ class Sides:
         self._expected = None
         return None
 
-    def end_in_view(self, problem: WaypointProblem) -> bool:
-        """True once for each end of the hill that has come into view since the way was chosen."""
-        still = len(self._open_ends(problem))
-        fewer, self._open = still < self._open, still
-        if not still:
+    def ends_left(self, problem: WaypointProblem) -> int | None:
+        """How many ends of the hill still lie where nobody has looked; None if as many as when asked last.
+
+        Nothing more is expected once none is left.
+        """
+        left = len(self._open_ends(problem))
+        if left >= self._open:
+            return None
+        self._open = left
+        if not left:
             self._expected = None
-        return fewer
+        return left
 
     def extended(self, problem: WaypointProblem) -> WaypointProblem:
         """The search with both ends of the hill avoided going on where nobody has looked; itself if none."""

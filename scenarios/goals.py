@@ -1,16 +1,17 @@
 """Which waypoints could be reached, judged with full knowledge by code that shares nothing with the planner.
 
-A waypoint nearer to an obstacle than its radius + margin + room to turn cannot be flown to and turned away
-from safely: it is replaced by the nearest point that can, or by none. So is one behind a passage too narrow
-to turn round in, and one outside the geofence or behind it. Spheres are cut where they are widest within
-the published altitude tolerance of the waypoint.
+A waypoint nearer to an obstacle than its radius + margin + the room published for it cannot be flown to and
+left again safely: it is replaced by the nearest point that can, or by none. So is one behind a passage too
+narrow to turn round in, and one outside the geofence or behind it. The margins and rooms are those that the
+core publishes; what follows from them is found here in another way. Spheres are cut where they are widest
+within the published altitude tolerance of the waypoint.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -89,11 +90,9 @@ def goals(
     for index, waypoint in enumerate(mission[1:], start=1):
         here = (waypoint.north, waypoint.east)
         walls = _walls(obstacles, waypoint.altitude, rule).joined(edges)
-        point = None
-        if _all_clear(here, walls.sized(walls.radii + rule.needed), fence):
-            point = None if separated(origin, here, _shut(walls, rule)) else here
-        for room in rule.rooms:
-            point = point or nearest_reachable(here, origin, walls, room, fence, _shut(walls, rule, room))
+        point = _goal(here, origin, walls, rule, fence)
+        if point is None:  # the start, too, may lie behind a narrow way
+            point = _goal(here, origin, walls, replace(rule, passage=0.0), fence)
         shift = 0.0 if point is None else float(np.hypot(point[0] - here[0], point[1] - here[1]))
         found.append(Goal(index, waypoint.north, waypoint.east, point, shift))
     return found
@@ -126,15 +125,40 @@ def _walls(obstacles: Sequence[Obstacle], altitude: float, rule: ReplacementRule
     return Shapes.discs(centres, radii + rule.margin)
 
 
-def _shut(walls: Shapes, rule: ReplacementRule, room: float = math.inf) -> Shapes:
-    """The walls so wide that ways too narrow for too long are shut; never wider than by `room` [m].
+def _goal(
+    here: tuple[float, float],
+    origin: tuple[float, float],
+    walls: Shapes,
+    rule: ReplacementRule,
+    fence: Sequence[FenceArea],
+) -> tuple[float, float] | None:
+    """The waypoint itself if it can be reached, else the nearest point that can, or None."""
+    roomy = _all_clear(here, walls.sized(walls.radii + rule.needed), fence)
+    if roomy and not separated(origin, here, _shut(walls, origin, rule)):
+        return here
+    for room in rule.rooms:
+        point = nearest_reachable(here, origin, walls, room, fence, _shut(walls, origin, rule, room))
+        if point is not None:
+            return point
+    return None
 
-    Between circles of radii a and b a way is wider by s²/2 (1/a + 1/b) a distance s before and behind.
+
+def _shut(
+    walls: Shapes, origin: tuple[float, float], rule: ReplacementRule, room: float = math.inf
+) -> Shapes:
+    """Walls so wide that ways too narrow for too long are shut; never by more than `room`, or to the start.
+
+    Notes
+    -----
+    Between circles of radii a and b a way is wider by s²/2 (1/a + 1/b) a distance s before and behind the
+    narrowest place. That is judged circle by circle: a corridor lined by circles counts as open if a way
+    between two of them alone would be, and beside straight walls every narrow way counts as shut.
     """
     widens = np.divide(rule.stretch**2, 8.0 * walls.radii, where=walls.radii > 0.0, out=np.zeros(len(walls)))
     straight = (walls.starts != walls.ends).any(axis=1)
     more = np.maximum(rule.passage - np.where(straight, 0.0, widens), 0.0)
-    return walls.sized(walls.radii + np.minimum(more, room))
+    free = np.maximum(walls.distances(np.array([origin]))[0] - SLACK, walls.radii)
+    return walls.sized(np.minimum(walls.radii + np.minimum(more, room), free))
 
 
 def _all_clear(place: tuple[float, float], shapes: Shapes, fence: Sequence[FenceArea]) -> bool:

@@ -7,10 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from avoidance import Ownship, Performance, Route
+from avoidance import Ownship, Performance, Route, Waypoint
 from avoidance.agent import Agent
 from avoidance.contingency import first_trap, longest_stretch, room_outside
 from avoidance.known import Known, kept_margin
+from avoidance.ladder import way_round
 from avoidance.orbits import (
     orbit_from_here,
     orbit_on_arrival,
@@ -20,6 +21,7 @@ from avoidance.orbits import (
     waypoint_room,
 )
 from avoidance.parameters import DEFAULT, PAPER
+from avoidance.passages import Gap, way_with_orbits
 from tests.avoidance.test_route_check import known
 from tests.avoidance.worlds import PERFORMANCE, ownship, route, scan
 
@@ -91,6 +93,27 @@ def test_a_leg_that_is_cut_hides_no_trap_on_the_way_to_it() -> None:
     assert decision.threat is not None
     assert decision.threat.leg == 0
     assert decision.threat.narrow
+
+
+def test_out_of_a_narrow_passage_a_way_is_found_through_another_that_is_short() -> None:
+    """Room for orbits everywhere would shut it; the way with no more room than it needs is no trap."""
+    gate = [(17_000.0, side * east) for east in np.arange(1055.0, 9000.0, 1500.0) for side in (-1.0, 1.0)]
+    walls = [
+        (north, -2500.0 + side * 1045.0) for north in np.arange(2500.0, 6501.0, 500.0) for side in (-1, 1)
+    ]
+    own, points = ownship(), ((1500.0, -2500.0), (7000.0, -2500.0), (20_000.0, 0.0))
+    way = Route(
+        Waypoint(0.0, 0.0, 200.0, item=0),
+        tuple(Waypoint(n, e, 200.0, item=1 if n > 9000.0 else None) for n, e in points),
+    )
+    around = seen([*walls, *gate], own, way)
+    trap = first_trap(own, way, around, PERFORMANCE, DEFAULT)
+    assert trap is not None
+    gap = Gap.of(own, way, around, trap, PERFORMANCE, DEFAULT)
+    found = way_with_orbits(gap, way_round, np.random.default_rng(0))
+    assert found is not None
+    assert found.route is not None
+    assert len(found.route) == 1
 
 
 @pytest.mark.parametrize(("more", "trap"), [(0.5, False), (-25.0, True)])

@@ -11,11 +11,14 @@ from hypothesis import strategies as st
 
 from avoidance import Detour, Keep, Replace, Reroute, Route
 from avoidance.agent import Agent
+from avoidance.detours import search_problem
 from avoidance.fenced_space import nearest_within
 from avoidance.geofence import FenceArea, Geofence, Walls
 from avoidance.known import within_fence
+from avoidance.ladder import exact_route
 from avoidance.orbits import orbit_from_here, waypoint_room
 from avoidance.parameters import DEFAULT
+from avoidance.route_check import first_blocked_leg
 from avoidance.tangent_graph import shortest_path
 from tests.avoidance.test_route_check import known
 from tests.avoidance.worlds import PERFORMANCE, ownship, route, scan
@@ -168,3 +171,25 @@ def test_an_orbit_turns_away_from_the_fence() -> None:
     orbit = orbit_from_here(own, within_fence(known([], own, way), fence, own, DEFAULT), PERFORMANCE)
     assert orbit.direction == 1
     assert orbit.clearance >= 0.0
+
+
+@pytest.mark.parametrize("corner", [(2059.0, -1406.0, 3895.0, 400.0), (2500.0, -311.0, 4390.0, 1091.0)])
+def test_the_exact_route_round_a_box_is_found_though_its_turns_come_near(
+    corner: tuple[float, float, float, float],
+) -> None:
+    """Walls are widened with the circles about their ends: no way could bend round one that is smaller."""
+    own, way = ownship(), route((6000.0, 0.0))
+    around = within_fence(known([], own, way), Geofence([box(*corner)]), own, DEFAULT)
+    blocked = first_blocked_leg(own, way, around, PERFORMANCE)
+    assert blocked is not None
+    problem, _, _ = search_problem(own, way, around, blocked, PERFORMANCE, DEFAULT)
+    found = exact_route(problem)
+    assert found is not None
+    corners = np.array([problem.start, *found, problem.target])
+    assert np.hypot(*np.diff(corners, axis=0).T).sum() < 6200.0
+
+
+def test_in_a_lane_beside_a_box_the_vehicle_does_not_hold() -> None:
+    fence = Geofence([box(-3000.0, -3000.0, 12_000.0, 1000.0, True), box(3000.0, -3500.0, 6500.0, 600.0)])
+    decision = Agent(PERFORMANCE, geofence=fence).decide(ownship(), route((9000.0, 0.0)), scan([]))
+    assert isinstance(decision, Detour | Reroute)

@@ -108,7 +108,7 @@ def test_a_hill_that_is_not_known_any_more_has_no_end() -> None:
     question = replace(problem([(9000.0, 0.0)]), avoided=np.empty(0, dtype=np.int64))
     sides = looking((0.0, 0.0))
     assert sides.extended(question) is question
-    assert not sides.end_in_view(question)
+    assert sides.ends_left(question) is None
 
 
 def test_each_end_that_comes_into_view_is_told_once() -> None:
@@ -116,12 +116,12 @@ def test_each_end_that_comes_into_view_is_told_once() -> None:
     question, sides = hill(wall(-7500.0, 7500.0)), looking((0.0, 0.0))
     sides.chosen(question, blocked(), ((9000.0, 9000.0),))
     way = Route(Waypoint(0.0, 0.0, 200.0), (Waypoint(9000.0, 9000.0, 200.0),))
-    assert not sides.end_in_view(question)
-    for east, last in ((-9000.0, False), (9000.0, True)):
+    assert sides.ends_left(question) is None
+    for east, left in ((-9000.0, 1), (9000.0, 0)):
         sides.look(ownship(7000.0, east), scan([(0.0, 0.0)]))
-        assert sides.end_in_view(question)
-        assert not sides.end_in_view(question)
-        assert (sides.expected(way, known([(9000.0, 0.0)], ownship(), way)) is None) == last
+        assert sides.ends_left(question) == left
+        assert sides.ends_left(question) is None
+        assert (sides.expected(way, known([(9000.0, 0.0)], ownship(), way)) is None) == (left == 0)
 
 
 def test_a_short_hill_is_what_it_is() -> None:

@@ -78,6 +78,14 @@ def test_behind_a_narrow_way_in_a_waypoint_moves_outside():
     assert not goal.replaced
 
 
+def test_a_start_behind_a_narrow_way_bars_nothing():
+    rule = replace(RULE, passage=60.0)
+    strip, field = ((-5400.0, -70.0), (-4900.0, 70.0)), ((-4950.0, -3000.0), (8000.0, 3000.0))
+    fence = [FenceArea(True, ((s, w), (n, w), (n, e), (s, e))) for (s, w), (n, e) in (strip, field)]
+    (_, goal) = goals([Point(-5200.0, 0.0, 200.0), Point(5000.0, 0.0, 200.0)], [], rule, fence)
+    assert goal.point == (5000.0, 0.0)
+
+
 def test_an_enclosed_waypoint_moves_outside_its_ring():
     wall = [obstacle(n, e) for n, e in ring(4000.0, 16)]
     (_, goal) = goals([START, Point(0.0, 0.0, 200.0)], wall, RULE)
