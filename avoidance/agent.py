@@ -168,8 +168,8 @@ class Agent:
         known = keep_what_can_be_kept(known, own, self._performance)
         slack = 0.0 if self._vigil.under_way else 1.0  # who circles would have to take the route up
         blocked = first_blocked_leg(own, route, known, self._performance, slack=slack)
-        until = route if blocked is None else replace(route, waypoints=route.waypoints[: blocked.leg])
-        blocked = first_trap(own, until, known, self._performance, self._parameters) or blocked
+        uncut = route if blocked is None else replace(route, waypoints=route.waypoints[: blocked.leg])
+        blocked = first_trap(own, uncut, known, self._performance, self._parameters) or blocked
         if blocked is None:
             blocked = first_conflict(own, route, known, self._performance)
         if blocked is not None:
@@ -249,10 +249,8 @@ class Agent:
             return None
         gap = Gap.of(own, route, known, hill, self._performance, self._parameters)
         left = self._sides.ends_left(gap.problem)
-        if left != 0:
-            self._retry_at = (
-                own.time + RETRY
-            )  # an end comes into view by looking, whether or not anything is new
+        if left != 0:  # an end comes into view by looking, whether or not anything is new
+            self._retry_at = own.time + RETRY
         if left is None:
             return None
         planner = self._sides.way(self._way) if left else self._way

@@ -123,7 +123,9 @@ def way_with_orbits(gap: Gap, planner: Way, rng: np.random.Generator) -> Decisio
             return gap.way(shortest)
         corners = np.array([problem.start, *shortest.waypoints, problem.target])
         passage = corners[: max(trap.leg - gap.begin, 0) + 2]
-    rooms = [*([np.zeros(len(problem.keep))] if shortest is None else []), *_rooms(gap, passage)]
+    rooms = list(_rooms(gap, passage))
+    if shortest is None:
+        rooms.insert(0, np.zeros(len(problem.keep)))
     for room in rooms:
         plan = exact_plan(problem, room)
         if plan is not None and gap.trap(plan) is None:

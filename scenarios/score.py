@@ -210,9 +210,8 @@ def replacement_rule(parameters: Parameters, performance: Performance) -> Replac
 
     By default a waypoint needs RS + margin + room to turn and to wait, and so does what replaces it (where
     there is no such point, room to turn, then half of it); the way in must not be too narrow to turn round in
-    for long. The paper
-    replaces what lies inside the sphere, by a point at RS + tolerance. Both keep their altitude within
-    `ALTITUDE_TOLERANCE`.
+    for long. The paper replaces what lies inside the sphere, by a point at RS + tolerance. Both keep their
+    altitude within `ALTITUDE_TOLERANCE`.
     """
     margin = kept_margin(parameters, performance)
     turn = performance.turn_room

@@ -157,10 +157,7 @@ class Serial:
         """See `Outside`."""
         try:
             self._port.write(data)
-        except (
-            OSError,
-            TypeError,
-        ):  # gone, or closed meanwhile (its handle is None then): the reader will see
+        except (OSError, TypeError):  # gone, or closed meanwhile (no handle is left): the reader will see it
             return
 
     def close(self) -> None:
