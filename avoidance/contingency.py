@@ -16,7 +16,7 @@ from avoidance.flown import SEQUENCING_DELAY, late_turn
 from avoidance.geofence import FENCE, Walls
 from avoidance.geometry import segments_clearance
 from avoidance.known import Circles, Known
-from avoidance.orbits import SPACING, TIGHT, orbit_centres, orbit_reach, roll_in, turning_room
+from avoidance.orbits import SPACING, TIGHT, orbit_centres, orbit_reach, reach_across, roll_in, turning_room
 from avoidance.parameters import Parameters
 from avoidance.route_check import Blocked, altitude_bands, remaining_points
 from avoidance.types import Bools, Floats, Ints, Ownship, Performance, Route, Threat
@@ -99,8 +99,7 @@ def room_outside(performance: Performance, turn: float) -> float:
     `turn` is the change of course at each of its corners [rad]; legs are longer than the run before a corner,
     else there are stretches, shorter than `longest_stretch`, that would need a little more.
     """
-    reach = orbit_reach(performance) + 2.0 * performance.tracking_error
-    return reach + float(_corner_room(np.array([turn]), performance)[0]) - TIGHT * performance.turn_radius
+    return reach_across(performance) + float(_corner_room(np.array([turn]), performance)[0])
 
 
 def _corners(points: Floats, course: float, performance: Performance) -> tuple[Floats, Floats]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from avoidance.ladder import Plan, exact_route, way_round
+from avoidance.exact_route import exact_route
+from avoidance.ladder import Plan, way_round
 from avoidance.problem import WaypointProblem
 from avoidance.types import Floats, Rung, Search
 

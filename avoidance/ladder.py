@@ -12,18 +12,16 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TypeAlias
 
 import numpy as np
 
-from avoidance.contingency import room_outside
-from avoidance.flown import SEQUENCING_DELAY, flown_segments
-from avoidance.geometry import point_distances, segment_point_distance, segments_clearance
+from avoidance.exact_route import Corners, exact_route, flyable
+from avoidance.geometry import point_distances, segment_point_distance
 from avoidance.problem import WaypointProblem
 from avoidance.search import search_waypoint
 from avoidance.tangent_graph import shortest_path
 from avoidance.traffic_route import two_waypoints
-from avoidance.types import Floats, Performance, Rung, Search
+from avoidance.types import Rung, Search
 
 RUNGS: tuple[tuple[Rung, frozenset[str]], ...] = (
     (Rung.WAYPOINT, frozenset()),
@@ -32,17 +30,6 @@ RUNGS: tuple[tuple[Rung, frozenset[str]], ...] = (
     (Rung.CLOSE, frozenset({"g4", "g2", "g1"})),
 )
 """Single-waypoint rungs and the constraints given up on each."""
-
-Corners: TypeAlias = tuple[tuple[float, float], ...]
-"""Waypoints in order, north and east [m]."""
-
-LARGEST_CORNER = math.radians(15.0)
-"""Heading change of a corner of an exact route [rad]."""
-
-HARDLY = 0.025
-"""By how much circles are widened where more would shut the way, in turn radii."""
-ROUNDS = 6
-"""How often circles are widened until a route can be flown."""
 
 ROOM_LEFT = 50.0
 """A separation from an intruder is worth a change of route if it is better by this [m]."""
@@ -205,63 +192,6 @@ def _kept_from_intruders(problem: WaypointProblem, route: Corners | None) -> Cor
     return route
 
 
-def exact_route(
-    problem: WaypointProblem, longest: float = math.inf, room: Floats | float = 0.0
-) -> Corners | None:
-    """Waypoints of the shortest path round everything known that can be flown, or None if over `longest` [m].
-
-    The path keeps `room`, shape (d,) or one for all, more from each obstacle that is not nearer to its ends
-    [m]; of the flown curve, with its turns, that is not asked. First with what leaves room for orbits beside;
-    where that shuts the way, with hardly any. Intruders are not considered. No waypoints at all: the straight
-    way leads out of a margin that the vehicle is already inside.
-    """
-    performance = problem.performance
-    beside = room_outside(performance, LARGEST_CORNER) - problem.parameters.margin
-    for pad in (max(_cut(performance), beside), HARDLY * performance.turn_radius):
-        route = _as_flown(problem, problem.keep + pad + room, pad, longest)
-        if route is not None:
-            return route
-    return None
-
-
-def _as_flown(problem: WaypointProblem, keep: Floats, pad: float, longest: float) -> Corners | None:
-    """The same round circles of radii `keep`, shape (d,), and walls wider by `pad` [m].
-
-    Those that the flown curve, with its turns, comes too near to are widened further until it is clear; for
-    walls all are, as the circles about their ends must not be smaller.
-    """
-    free_start = point_distances(problem.centres, problem.start) - 0.5
-    free_target = point_distances(problem.centres, problem.target) - 0.5
-    room, last = problem.walls.room + pad, None
-    for _ in range(ROUNDS):
-        radii = np.maximum(np.minimum(np.minimum(keep, free_start), free_target), 0.0)
-        if last is not None and room == last[1] and np.array_equal(radii, last[0]):
-            return None  # what would have to be wider begins or ends here
-        last = (radii, room)
-        walls = replace(problem.walls, room=room)
-        path = shortest_path(problem.start, problem.target, problem.centres, radii, walls, longest)
-        if path is None:
-            return None
-        corners = path.polyline(LARGEST_CORNER)
-        lacking, outside = _shortfalls(problem, corners)
-        if not lacking.any() and outside <= 0.0:
-            return tuple((float(point[0]), float(point[1])) for point in corners[1:-1])
-        wider = 2.0 * outside + 1.0 if outside > 0.0 else 0.0
-        keep = keep + np.maximum(np.where(lacking > 0.0, 2.0 * lacking + 1.0, 0.0), wider)
-        room += wider
-    return None
-
-
-def _cut(performance: Performance) -> float:
-    """How far the corners of an exact route, which lie outside of a circle, are cut towards it at most [m].
-
-    The vehicle leaves a leg up to `run` before the corner and is led on to the next one, which touches the
-    circle halfway.
-    """
-    run = performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
-    return 0.5 * run * math.sin(LARGEST_CORNER)
-
-
 def _any_way(problem: WaypointProblem) -> bool:
     """Whether a point could get to the target, however sharply it turned: if not, no waypoint helps."""
     free_start = point_distances(problem.centres, problem.start) - 0.5
@@ -273,26 +203,3 @@ def _any_way(problem: WaypointProblem) -> bool:
 def _length(problem: WaypointProblem, waypoints: Corners) -> float:
     corners = (problem.start, *waypoints, problem.target)
     return sum(math.dist(a, b) for a, b in pairwise(corners))
-
-
-def flyable(problem: WaypointProblem, corners: Floats) -> bool:
-    """True if a route, flown with its turns, keeps clear of what stands still and of the geofence.
-
-    `corners`, shape (k, 2) [m], begin at the start and end at the target.
-    """
-    lacking, outside = _shortfalls(problem, corners)
-    return not lacking.any() and outside <= 0.0
-
-
-def _shortfalls(problem: WaypointProblem, corners: Floats) -> tuple[Floats, float]:
-    """By how much a route, flown with its turns, comes too near to each circle, shape (d,), and walls [m]."""
-    if problem.before is not None:
-        corners = np.concatenate([np.array([problem.before]), corners])
-    starts, ends, extra = flown_segments(corners[None], problem.course, problem.performance)
-    skip = 0 if problem.before is None else 1
-    starts, ends, extra = starts[:, skip:], ends[:, skip:], extra[:, skip:]
-    lacking = np.zeros(len(problem.centres))
-    if len(lacking):
-        clearance = segments_clearance(starts[0], ends[0], problem.centres) - extra[0][:, None]
-        lacking = np.maximum(problem.keep - 0.5 - clearance.min(axis=0), 0.0)
-    return lacking, max(float(problem.walls.shortfall(starts, ends, extra)[0]) - 0.5, 0.0)

@@ -53,7 +53,12 @@ def orbit_reach(performance: Performance, radii: float = TIGHT) -> float:
 
 def turning_room(performance: Performance) -> float:
     """What is to be kept from spheres on one side, so that an orbit to that side is free [m]."""
-    return TIGHT * performance.turn_radius + orbit_reach(performance) + 2.0 * performance.tracking_error
+    return 2.0 * TIGHT * performance.turn_radius + reach_across(performance)
+
+
+def reach_across(performance: Performance) -> float:
+    """How far a tight orbit reaches across the leg that it begins on, to its other side [m]."""
+    return orbit_reach(performance) + 2.0 * performance.tracking_error - TIGHT * performance.turn_radius
 
 
 def waypoint_room(performance: Performance, margin: float) -> float:
@@ -72,9 +77,11 @@ def waypoint_room(performance: Performance, margin: float) -> float:
 def passage_room(performance: Performance, margin: float) -> float:
     """What is needed beyond the margin on both sides of a way in, so that an orbit fits in beside it [m].
 
-    Half of what is needed on one side, in bends as well.
+    Half of what is needed on one side, in bends as well, and of what an orbit needs on the other side.
     """
-    return 0.5 * max(turning_room(performance) + BENDS * performance.turn_radius - margin, 0.0)
+    beside = max(reach_across(performance), margin) - margin
+    turning = turning_room(performance) + BENDS * performance.turn_radius - margin
+    return 0.5 * max(turning + beside, 0.0)
 
 
 def _acted_upon(performance: Performance) -> float:
@@ -171,6 +178,7 @@ __all__ = [
     "orbit_on_arrival",
     "orbit_reach",
     "passage_room",
+    "reach_across",
     "roll_in",
     "turning_room",
     "waypoint_room",

@@ -12,8 +12,9 @@ import numpy as np
 from avoidance.contingency import first_trap
 from avoidance.detours import fly_round, search_problem
 from avoidance.exact import exact_plan
+from avoidance.exact_route import Corners
 from avoidance.known import Known
-from avoidance.ladder import Corners, Plan, Way, widest_way
+from avoidance.ladder import Plan, Way, widest_way
 from avoidance.orbits import BENDS, turning_room
 from avoidance.parameters import Parameters
 from avoidance.problem import WaypointProblem

@@ -146,18 +146,26 @@ class WaypointProblem:
         return safe_waypoint(points, self.centres[self.avoided], required[self.avoided])
 
     def _feasible_route(self, points: Floats) -> Floats:
+        onward = np.empty((len(points), 2), dtype=np.complex128)
+        onward[:, 0], onward[:, 1] = as_complex(points), complex(*self.target)
+        return self.route_shortfall(onward)
+
+    def route_shortfall(self, onward: Complexes) -> Floats:
+        """By how much ways from the start, flown with their turns, come too near to anything [m], shape (n,).
+
+        `onward` are their waypoints, as complex numbers of shape (n, k) [m].
+        """
         if not len(self.centres) and not len(self.walls):
-            return np.zeros(len(points))
+            return np.zeros(len(onward))
         before = [] if self.before is None else [complex(*self.before)]
         known = [*before, complex(*self.start)]
-        route = np.empty((len(points), len(known) + 2), dtype=np.complex128)
-        route[:, : len(known)], route[:, -1] = known, complex(*self.target)
-        route[:, -2] = as_complex(points)
+        route = np.empty((len(onward), len(known) + onward.shape[1]), dtype=np.complex128)
+        route[:, : len(known)], route[:, len(known) :] = known, onward
         starts, ends, extra = flown_lines(route, self.course, self.performance)
         skip = len(before)  # the leg that leads to the start is another search's
         starts, ends, extra = starts[:, skip:], ends[:, skip:], extra[:, skip:]
-        shortfall = np.zeros(len(points))
-        if len(self.centres) and len(points):
+        shortfall = np.zeros(len(onward))
+        if len(self.centres) and len(onward):
             shortfall = self._line_shortfall(starts, ends, extra)
         if len(self.walls):
             shortfall = np.maximum(shortfall, self.walls.shortfall(as_pairs(starts), as_pairs(ends), extra))

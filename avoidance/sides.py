@@ -16,10 +16,11 @@ from itertools import pairwise
 
 import numpy as np
 
+from avoidance.exact_route import Corners
 from avoidance.geofence import Walls
 from avoidance.geometry import distances
 from avoidance.known import Known
-from avoidance.ladder import Corners, Plan, Way
+from avoidance.ladder import Plan, Way
 from avoidance.problem import WaypointProblem
 from avoidance.route_check import Blocked
 from avoidance.types import Decision, Floats, Ownship, RadarScan, Route, Threat

@@ -14,7 +14,16 @@ from offboard.mission import MissionItem, MissionPlan
 from offboard.simulated import SimulatedVehicle
 from scenarios.errors import ScenarioError
 from scenarios.movers import FlownMover, Mover, PointMover
-from scenarios.scenario import WIND_AT_20_FT, Fidelity, Point, Scenario, Traffic, Turbulence, turbulence_seed
+from scenarios.scenario import (
+    WIND_AT_20_FT,
+    Fidelity,
+    Point,
+    Scenario,
+    Traffic,
+    Turbulence,
+    Wind,
+    turbulence_seed,
+)
 from scenarios.score import Energy
 
 if TYPE_CHECKING:
@@ -29,13 +38,34 @@ TRACKING_ERROR: dict[str, dict[Turbulence, float]] = {
 """Largest distance from a straight leg once it is captured, by guidance law and turbulence [m].
 
 Measured over 20,000 s of the mission of Sec. 5.1 in 8 m/s of wind, in both fidelities: in turbulence 4.5, 9.5
-and 26.5 m (L1), 31.5, 64.9 and 101.5 m (paper).
+and 26.5 m (L1), 31.5, 64.9 and 101.5 m (paper). After sharper turns: `benchmarks/vehicle_limits.py`.
 """
+IN_STILL_AIR = {"l1": 2.5, "paper": 10.0}
+"""The same without wind and turbulence, at 15 m/s; it grows with the airspeed."""
 CAPTURE_DISTANCE = {"l1": 250.0, "paper": 2500.0}
-"""Distance along a new leg until it is captured within that, after a reversal of course [m].
+"""Distance along a new leg until it is captured within that, after a reversal of course, at 15 m/s [m].
 
 Measured on the mission of Sec. 5.1: 219 m (L1, acceptance radius 100 m) and 2,399 m (paper, 1 km).
 """
+MEASURED_AT = 15.0
+"""Speed at which they were measured [m/s]."""
+
+
+def tracking_error(guidance: str, airspeed: float, wind: Wind) -> float:
+    """Largest distance from a straight leg once it is captured, in a wind [m]."""
+    still = wind.turbulence == "none" and wind.speed == 0.0
+    if still:
+        return IN_STILL_AIR[guidance] * max(airspeed / MEASURED_AT, 1.0)
+    return TRACKING_ERROR[guidance][wind.turbulence]
+
+
+def capture_distance(guidance: str, airspeed: float, wind: Wind) -> float:
+    """Distance along a new leg until it is captured within the tracking error [m].
+
+    It grows with the ground speed, faster than in proportion to it (`benchmarks/vehicle_limits.py`).
+    """
+    faster = max((airspeed + wind.speed + wind.gusts) / MEASURED_AT, 1.0)
+    return CAPTURE_DISTANCE[guidance] * (faster**1.5 if guidance == "l1" else 1.0)
 
 
 class Hangar:
@@ -206,8 +236,8 @@ class Hangar:
             max_bank=math.atan(plant.limits.turn_factor * math.tan(plant.limits.max_bank)),
             roll_time=plant.limits.roll_time,
             acceptance_radius=acceptance_radius,
-            tracking_error=TRACKING_ERROR[self._parameters.guidance][wind.turbulence],
-            capture_distance=CAPTURE_DISTANCE[self._parameters.guidance],
+            tracking_error=tracking_error(self._parameters.guidance, airspeed, wind),
+            capture_distance=capture_distance(self._parameters.guidance, airspeed, wind),
             wind_bound=wind.speed + wind.gusts,
         )
         return plant, performance

@@ -13,7 +13,8 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from avoidance.ladder import Plan, flyable, way_round
+from avoidance.exact_route import flyable
+from avoidance.ladder import Plan, way_round
 from avoidance.problem import INFEASIBLE, WaypointProblem, search_box
 from avoidance.seeds import rule_seeds, sphere_seeds
 from avoidance.types import Floats, Rung, Search

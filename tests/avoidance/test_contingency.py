@@ -17,6 +17,7 @@ from avoidance.orbits import (
     orbit_on_arrival,
     orbit_reach,
     passage_room,
+    reach_across,
     turning_room,
     waypoint_room,
 )
@@ -156,7 +157,7 @@ def test_where_a_waypoint_may_lie_an_orbit_is_free_on_arrival_from_everywhere(
 @pytest.mark.parametrize(("more", "trap"), [(1.0, False), (-40.0, True)])
 def test_a_way_in_with_room_on_both_sides_is_no_trap_along_one_of_them(more: float, trap: bool) -> None:
     room = DEFAULT.margin + passage_room(PERFORMANCE, DEFAULT.margin) + more
-    aside = room - DEFAULT.margin
+    aside = room - max(DEFAULT.margin, reach_across(PERFORMANCE))
     own, way = ownship(east=-aside), route((40_000.0, -aside), origin=(0.0, -aside))
     found = first_trap(own, way, seen(corridor(room), own, way), PERFORMANCE, DEFAULT)
     assert (found is not None) == trap

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 from avoidance import Detour, Keep, Replace, Reroute, Route
 from avoidance.agent import Agent
 from avoidance.detours import search_problem
+from avoidance.exact_route import exact_route
 from avoidance.fenced_space import nearest_within
 from avoidance.geofence import FenceArea, Geofence, Walls
 from avoidance.known import within_fence
-from avoidance.ladder import exact_route
 from avoidance.orbits import orbit_from_here, waypoint_room
 from avoidance.parameters import DEFAULT
 from avoidance.route_check import first_blocked_leg
@@ -116,7 +116,7 @@ def fly_scans(fence: Geofence, way: Route, obstacles: list[tuple[float, float]])
 
 def test_a_detour_stays_within_the_fence() -> None:
     """The shorter side is forbidden."""
-    fence = Geofence([box(-2000.0, -900.0, 42_000.0, 20_000.0, include=True)])
+    fence = Geofence([box(-2000.0, -840.0, 42_000.0, 20_000.0, include=True)])
     free, _ = fly_scans(Geofence(), route((40_000.0, 0.0)), [(9000.0, 200.0)])
     fenced, way = fly_scans(fence, route((40_000.0, 0.0)), [(9000.0, 200.0)])
     assert [d.waypoint.east < 0.0 for d in free if isinstance(d, Detour)] == [True]

@@ -63,17 +63,18 @@ def test_the_inside_of_a_corner_counts() -> None:
 def test_spheres_are_cut_at_flight_altitude() -> None:
     own, way = ownship(), route((40_000.0, 0.0))
     circle = known([(5000.0, 0.0)], own, way, altitude=815.0).circles(200.0, 200.0)  # 600 m above the band
-    assert circle.keep[0] == pytest.approx(800.0 + DEFAULT.margin)
+    assert circle.keep[0] == pytest.approx(800.0 + kept_margin(DEFAULT, PERFORMANCE))
 
 
 def test_circles_shrink_where_the_margin_cannot_be_kept_any_more() -> None:
     own, way = ownship(), route((40_000.0, 0.0))
-    near = keep_what_can_be_kept(known([(0.0, 1020.0)], own, way), own, PERFORMANCE).circles(200.0, 200.0)
-    assert near.keep[0] == pytest.approx(1019.0)
+    near = keep_what_can_be_kept(known([(0.0, 1010.0)], own, way), own, PERFORMANCE).circles(200.0, 200.0)
+    assert near.keep[0] == pytest.approx(1009.0)
 
 
 @pytest.mark.parametrize(
-    ("error", "wind", "kept"), [(5.0, 0.0, 25.0), (10.0, 12.0, 0.4 * 128.7), (30.0, 0.0, 40.0)]
+    ("error", "wind", "kept"),
+    [(5.0, 0.0, 0.4 * 39.73), (7.0, 0.0, 17.0), (10.0, 12.0, 0.4 * 128.7), (30.0, 0.0, 40.0)],
 )
 def test_the_margin_grows_with_turn_radius_and_tracking_error(error: float, wind: float, kept: float) -> None:
     vehicle = replace(PERFORMANCE, tracking_error=error, wind_bound=wind)
