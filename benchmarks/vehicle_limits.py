@@ -83,8 +83,8 @@ def overshot(scenario: Scenario, orbits: int) -> float:
 def main() -> None:
     """Print one row for each fidelity, wind and turbulence."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seconds", type=float, default=20_000.0, help="flown on legs per row (%(default)s)")
-    parser.add_argument("--orbits", type=int, default=180, help="flown per row (%(default)s)")
+    parser.add_argument("--seconds", type=float, default=6000.0, help="flown on legs per row (%(default)s)")
+    parser.add_argument("--orbits", type=int, default=60, help="flown per row (%(default)s)")
     parser.add_argument("--winds", type=float, nargs="+", default=[0.0, 8.0], help="[m/s] (%(default)s)")
     parser.add_argument("--airspeed", type=float, default=15.0, help="[m/s] (%(default)s)")
     parser.add_argument("--acceptance-radius", type=float, default=20.0, help="[m] (%(default)s)")

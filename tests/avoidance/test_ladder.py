@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from avoidance import Rung
 from avoidance.constraints import feasible_segments
-from avoidance.exact_route import exact_route
+from avoidance.exact_route import exact_route, flyable
 from avoidance.flown import flown_segments
 from avoidance.geometry import segments_clearance
 from avoidance.ladder import way_round
 from tests.avoidance.worlds import PERFORMANCE, problem
 
+AGILE = replace(PERFORMANCE, acceptance_radius=20.0, tracking_error=2.5)
 WALLS = [(6000.0, float(e)) for e in range(-60_000, 3000, 1500)]
 WALLS += [(11_000.0, float(e)) for e in range(-3000, 60_000, 1500)]
 
@@ -51,6 +54,28 @@ def test_only_what_the_turns_come_near_to_is_kept_further_from() -> None:
     corners = np.array([question.start, *route, question.target])
     near, *far = (segments_clearance(corners[:-1], corners[1:], question.centres) - question.keep).min(axis=0)
     assert near > 20.0 > min(far)
+
+
+def test_after_a_sharp_turn_the_way_comes_back_to_the_circle_it_goes_round() -> None:
+    """Beside a sphere the turn needs room; a first leg to one side gives it, the rest keeps none."""
+    question = replace(problem([(-1100.0, -300.0)], target=(-20_000.0, -1500.0)), performance=AGILE)
+    route = exact_route(question)
+    assert route is not None
+    corners = np.array([question.start, *route, question.target])
+    assert flyable(question, corners)
+    clear = segments_clearance(corners[:-1], corners[1:], question.centres)[:, 0] - question.keep[0]
+    assert clear[0] > 60.0  # so much the turn needs
+    assert clear[2:].min() < 5.0
+
+
+def test_the_way_after_a_sharp_turn_is_not_longer_than_was_allowed() -> None:
+    question = replace(problem([(-1100.0, -300.0)], target=(-20_000.0, -1500.0)), performance=AGILE)
+    route = exact_route(question)
+    assert route is not None
+    corners = (question.start, *route, question.target)
+    length = sum(math.dist(a, b) for a, b in pairwise(corners))
+    assert exact_route(question, length + 1.0) == route
+    assert exact_route(question, length - 1.0) is None
 
 
 def test_a_short_route_beats_a_single_waypoint_far_away() -> None:

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from datetime import UTC, datetime
 
+import numpy as np
 import pytest
 
 from scenarios.hangar import Hangar
 from scenarios.load import parse
 from scenarios.run import preset
+from scenarios.scenario import FIDELITIES, Point
 from scenarios.score import score
 from scenarios.show import _verdict
 from tests.scenarios.flights import ENCOUNTER, encounter
@@ -84,6 +87,56 @@ def test_a_vehicle_tells_how_far_gusts_carry_it(guidance, limit):
         performance = hangar.own_vehicle().performance
     assert performance.tracking_error == limit
     assert performance.wind_bound == pytest.approx(scenario.wind.speed + 4.26, abs=0.01)
+
+
+def promised(airspeed=15.0, wind=(0.0, 0.0), turbulence="none"):
+    scenario = parse(ENCOUNTER)
+    blowing = replace(scenario.wind, north=wind[0], east=wind[1], turbulence=turbulence)
+    vehicle = replace(scenario.vehicle, airspeed=airspeed)
+    with Hangar(replace(scenario, wind=blowing, vehicle=vehicle), preset("default")) as hangar:
+        return hangar.own_vehicle().performance
+
+
+def test_in_still_air_a_vehicle_keeps_closer_to_its_legs():
+    still, fast, windy, gusty = (
+        promised(),
+        promised(airspeed=18.0),
+        promised(wind=(6.0, 0.0)),
+        promised(turbulence="light"),
+    )
+    assert still.tracking_error < fast.tracking_error < windy.tracking_error == gusty.tracking_error
+    assert still.capture_distance < fast.capture_distance < windy.capture_distance
+
+
+@pytest.mark.parametrize("fidelity", list(FIDELITIES.values()))
+@pytest.mark.parametrize("speed", [0.0, 8.0])
+def test_legs_are_kept_to_as_promised(fidelity, speed):
+    """After changes of course of every size; a sample of what benchmarks/vehicle_limits.py measures."""
+    scenario = parse(ENCOUNTER)
+    wind = replace(scenario.wind, north=0.0, east=speed, turbulence="none")
+    vehicle = replace(scenario.vehicle, fidelity=fidelity, acceptance_radius=20.0)
+    rng, course, points = np.random.default_rng(3), 0.0, [Point(0.0, 0.0, 200.0)]
+    for _ in range(12):
+        north = points[-1].north + 1500.0 * math.cos(course)
+        points.append(Point(north, points[-1].east + 1500.0 * math.sin(course), 200.0))
+        course += rng.choice((-1.0, 1.0)) * rng.uniform(1.5, math.pi)
+    with Hangar(
+        replace(scenario, mission=tuple(points), wind=wind, vehicle=vehicle), preset("default")
+    ) as hangar:
+        own, looked = hangar.own_vehicle(), 0
+        while not own.finished:
+            own.advance(0.5)
+            here, route = own.state().ownship, own.route()
+            if not route.waypoints:
+                break
+            leg = complex(
+                route.waypoints[0].north - route.origin.north, route.waypoints[0].east - route.origin.east
+            )
+            off = complex(here.north - route.origin.north, here.east - route.origin.east) / (leg / abs(leg))
+            if own.performance.capture_distance <= off.real <= abs(leg):
+                looked += 1
+                assert abs(off.imag) <= own.performance.tracking_error
+    assert looked > 500
 
 
 def test_a_waypoint_that_cannot_be_reached_is_not_said_to_be_reachable():
