@@ -10,8 +10,9 @@ from typing import TypeAlias
 
 import numpy as np
 
+from avoidance.constraints import feasible_segments
 from avoidance.contingency import room_outside
-from avoidance.flown import SEQUENCING_DELAY, as_complex, flown_segments
+from avoidance.flown import SEQUENCING_DELAY, as_complex, as_pairs, flown_segments
 from avoidance.geometry import point_distances, segments_clearance
 from avoidance.problem import WaypointProblem
 from avoidance.tangent_graph import shortest_path
@@ -43,6 +44,8 @@ def exact_route(
 ) -> Corners | None:
     """Waypoints of the shortest path round everything known that can be flown, or None if over `longest` [m].
 
+    What is over it is the path along arcs; that of the waypoints is a little longer.
+
     The path keeps `room`, shape (d,) or one for all, more from each obstacle that is not nearer to its ends
     [m]; of the flown curve, with its turns, that is not asked. First with what leaves room for orbits beside;
     where that shuts the way, with hardly any. Intruders are not considered. No waypoints at all: the straight
@@ -51,65 +54,80 @@ def exact_route(
     performance = problem.performance
     beside = room_outside(performance, LARGEST_CORNER) - problem.parameters.margin
     for pad in (max(_cut(performance), beside), HARDLY * performance.turn_radius):
-        route = _as_flown(problem, problem.keep + pad + room, pad, longest)
+        route = _as_flown(problem, room, pad, longest)
         if route is not None:
             return route
     return None
 
 
-def _as_flown(problem: WaypointProblem, keep: Floats, pad: float, longest: float) -> Corners | None:
-    """The same round circles of radii `keep`, shape (d,), and walls wider by `pad` [m].
+def _as_flown(problem: WaypointProblem, room: Floats | float, pad: float, longest: float) -> Corners | None:
+    """The same round circles wider by `room` and `pad`, and walls wider by `pad` [m].
 
     Those that the flown curve, with its turns, comes too near to are widened further until it is clear; for
     walls all are, as the circles about their ends must not be smaller.
     """
     free_start = point_distances(problem.centres, problem.start) - 0.5
     free_target = point_distances(problem.centres, problem.target) - 0.5
-    room, last = problem.walls.room + pad, None
+    keep, walled, last = problem.keep + room + pad, problem.walls.room + pad, None
     for _ in range(ROUNDS):
         radii = np.maximum(np.minimum(np.minimum(keep, free_start), free_target), 0.0)
-        if last is not None and room == last[1] and np.array_equal(radii, last[0]):
+        if last is not None and walled == last[1] and np.array_equal(radii, last[0]):
             return None  # what would have to be wider begins or ends here
-        last = (radii, room)
-        walls = replace(problem.walls, room=room)
+        last = (radii, walled)
+        walls = replace(problem.walls, room=walled)
         path = shortest_path(problem.start, problem.target, problem.centres, radii, walls, longest)
         if path is None:
             return None
-        corners = path.polyline(LARGEST_CORNER)
+        corners = path.polyline(LARGEST_CORNER, _run(problem.performance))
         lacking, outside = _shortfalls(problem, corners)
         if not lacking.any() and outside <= 0.0:
             return _waypoints(corners)
-        for turned in _turned_aside(problem, corners):
+        for turned in _turned_aside(problem, corners, np.minimum(radii, problem.keep + room)):
             lacking, outside = _shortfalls(problem, turned)
             if not lacking.any() and outside <= 0.0:
                 return _waypoints(turned) if _length(turned) < longest else None
         wider = 2.0 * outside + 1.0 if outside > 0.0 else 0.0
         keep = keep + np.maximum(np.where(lacking > 0.0, 2.0 * lacking + 1.0, 0.0), wider)
-        room += wider
+        walled += wider
     return None
 
 
-def _turned_aside(problem: WaypointProblem, corners: Floats) -> Iterator[Floats]:
+def _turned_aside(problem: WaypointProblem, corners: Floats, radii: Floats) -> Iterator[Floats]:
     """The way by `corners`, shape (k, 2) [m], beginning more to one side, so that its first turn is free.
 
-    The shortest come first; none if the first turn is not sharp.
+    Its straight legs keep out of circles of `radii`, shape (d,) [m]. The shortest come first; none if the
+    first turn is not sharp.
     """
     if not _sharp_at_first(problem, corners):
         return
     start, way = complex(*problem.start), as_complex(corners)
     ahead = (way[1] - start) / max(abs(way[1] - start), 1e-9)
-    reach = problem.performance.capture_distance * np.array(CAPTURED)
+    reach = np.maximum(
+        problem.performance.capture_distance * np.array(CAPTURED), _not_passed_at_once(problem)
+    )
     first = (start + reach[:, None] * ahead * np.exp(1j * ASIDE)).ravel()
     rest = np.append(np.cumsum(np.abs(np.diff(way))[::-1])[::-1], 0.0)
     found: list[tuple[float, complex, int]] = []
     for joined in range(1, min(len(way), JOINED + 1)):
         onward = np.empty((len(first), 3), dtype=np.complex128)
         onward[:, 0], onward[:, 1], onward[:, 2] = first, way[joined], way[min(joined + 1, len(way) - 1)]
-        free = np.flatnonzero(problem.route_shortfall(onward) <= 0.0)
+        legs = as_pairs(np.column_stack([np.full(len(first), start), first])), as_pairs(onward[:, :2])
+        outside = feasible_segments(legs[0], legs[1], np.zeros((len(first), 2)), problem.centres, radii - 0.5)
+        free = np.flatnonzero((problem.route_shortfall(onward) <= 0.0) & (outside <= 0.0))
         length = np.abs(first - start) + np.abs(way[joined] - first) + rest[joined]
         found += [(float(length[k]), complex(first[k]), joined) for k in free]
     for _, point, joined in sorted(found, key=lambda way: way[0])[:PROMISING]:
         yield np.concatenate([corners[:1], [[point.real, point.imag]], corners[joined:]])
+
+
+def _not_passed_at_once(problem: WaypointProblem) -> float:
+    """How far from the start a first waypoint must lie so that the turn there does not pass it as well [m].
+
+    Where a waypoint is reached, that may happen at its acceptance radius.
+    """
+    performance = problem.performance
+    early = 0.0 if problem.before is None else _run(performance)
+    return early + performance.acceptance_radius + 2.0 * performance.turn_radius
 
 
 def _sharp_at_first(problem: WaypointProblem, corners: Floats) -> bool:
@@ -134,8 +152,12 @@ def _cut(performance: Performance) -> float:
     The vehicle leaves a leg up to `run` before the corner and is led on to the next one, which touches the
     circle halfway.
     """
-    run = performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
-    return 0.5 * run * math.sin(LARGEST_CORNER)
+    return 0.5 * _run(performance) * math.sin(LARGEST_CORNER)
+
+
+def _run(performance: Performance) -> float:
+    """How far before a corner the vehicle may turn [m]; several corners within that are passed at once."""
+    return performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
 
 
 def flyable(problem: WaypointProblem, corners: Floats) -> bool:

@@ -53,6 +53,7 @@ def flown_segments(
     the new leg and comes back to it from outside. At a sharper one it flies the turning circle beside the
     end of the incoming leg, and from there to the exit point. After a change of target the turn begins
     where the vehicle is: it runs on by R tan(dchi/2) plus the roll distance and joins the leg from outside.
+    Corners nearer to one another than the vehicle turns before them are passed at once, in one turn.
     """
     starts, ends, extra = flown_lines(as_complex(points), course, performance, begun=begun)
     return as_pairs(starts), as_pairs(ends), extra
@@ -76,7 +77,11 @@ def flown_lines(
         run = performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
         product = np.conj(before) * after
         entry = bend - np.minimum(run, lengths[:, :-1]) * before
-        starts[:, bends[0]], extra[:, bends[0]] = _turn(entry, before, product, performance)
+        if many > 2 and (lengths[:, 1:-1] < run).any():
+            entry, old = _far_entries(corners, units, lengths, run, entry)
+            starts[:, bends[0]], extra[:, bends[0]] = _turn(entry, old, np.conj(old) * after, performance)
+        else:
+            starts[:, bends[0]], extra[:, bends[0]] = _turn(entry, before, product, performance)
         capture = np.minimum(performance.capture_distance, lengths[:, 1:])
         ends[:, bends[0]] = ends[:, bends[1]] = bend + capture * after
         starts[:, bends[1]], extra[:, bends[1]] = _overshoot(bend, before, product, capture, performance)
@@ -86,6 +91,23 @@ def flown_lines(
         starts[:, -2], ends[:, -2] = corners[:, 0], first[0]
         starts[:, -1], ends[:, -1], extra[:, -1] = first[1:]
     return starts, ends, extra
+
+
+def _far_entries(
+    corners: Complexes, units: Complexes, lengths: Floats, run: float, entry: Complexes
+) -> tuple[Complexes, Complexes]:
+    """Where turns begin that pass several corners at once, and on what course, both of shape (n, k - 2).
+
+    `entry` is where they begin if the leg before is long enough.
+    """
+    along = np.zeros((len(corners), lengths.shape[1] + 1))
+    np.cumsum(lengths, axis=1, out=along[:, 1:])
+    at = np.maximum(along[:, 1:-1] - run, 0.0)
+    leg = (at[:, :, None] >= along[:, None, 1:-1]).sum(axis=2)
+    row = np.arange(len(corners))[:, None]
+    far = corners[row, leg] + (at - along[row, leg]) * units[row, leg]
+    short = lengths[:, :-1] < run
+    return np.where(short, far, entry), np.where(short, units[row, leg], units[:, :-1])
 
 
 def late_turn(turn: Floats, performance: Performance) -> Floats:

@@ -45,7 +45,8 @@ def orbit_reach(performance: Performance, radii: float = TIGHT) -> float:
     -----
     The orbit touches the present course one roll time ahead, so the flight begins √(r² + ℓ²) from its
     centre; what guidance overshoots, wind and an opposite bank included, is below two tracking errors
-    (measured on both fidelities, wind up to 11 m/s: at most 8.4 m).
+    (measured on both fidelities, with the wind 3 m/s or more below the airspeed:
+    `benchmarks/vehicle_limits.py`).
     """
     radius = radii * performance.turn_radius
     return math.hypot(radius, roll_in(performance)) + 2.0 * performance.tracking_error

@@ -53,21 +53,24 @@ class Path:
             least = np.minimum(least, self._arcs_clearance(centres))
         return np.asarray(least)
 
-    def polyline(self, max_turn: float = math.radians(30.0)) -> Floats:
+    def polyline(self, max_turn: float = math.radians(30.0), shortest: float = 0.0) -> Floats:
         """Waypoints that fly the path, never inside a disc that the path keeps out of.
 
         Parameters
         ----------
         max_turn : float
             Largest change of course at a corner put in for an arc, in (0, π/2] [rad].
+        shortest : float
+            On arcs whose corners would be nearer to one another than this, fewer turn by more, up to 90° [m].
 
         Returns
         -------
         Floats
             Start, corners, goal (north, east) [m], shape (m, 2). Each arc is replaced by corners outside
             its disc, where the tangents of its parts meet; it is split until no corner turns by more
-            than `max_turn` and until no segment enters a neighbouring disc (by more than 1e-9 of its
-            radius; an arc squeezed between two discs that touch stops at 4096 corners).
+            than `max_turn`, as far as `shortest` allows, and until no segment enters a neighbouring disc
+            (by more than 1e-9 of its radius; an arc squeezed between two discs that touch stops at 4096
+            corners).
 
         Raises
         ------
@@ -79,7 +82,7 @@ class Path:
         corners: list[Floats] = [self.points[:1]]
         for k, disc in enumerate(self.discs.tolist()):
             if disc >= 0:
-                corners.append(self._corners(k, max_turn))
+                corners.append(self._corners(k, max_turn, shortest))
             elif k > 0 and self.discs[k - 1] < 0:
                 corners.append(self.points[k : k + 1])
         corners.append(self.points[-1:])
@@ -104,12 +107,13 @@ class Path:
         to_ends = np.hypot(centres[:, 0] - ends[:, 0, None], centres[:, 1] - ends[:, 1, None])
         return np.asarray(np.minimum(to_arcs.min(axis=0), to_ends.min(axis=0)))
 
-    def _corners(self, k: int, max_turn: float) -> Floats:
+    def _corners(self, k: int, max_turn: float, shortest: float) -> Floats:
         """Corners outside the disc that replace arc k, shape (c, 2) [m]."""
         disc, sweep = int(self.discs[k]), float(self.sweeps[k])
         others = np.arange(len(self.radii)) != disc
         limits = self.radii[others] * (1.0 - TOUCH)
-        parts = max(1, math.ceil(abs(sweep) / max_turn - 1e-9))
+        turn = max(max_turn, min(2.0 * math.atan2(shortest, 2.0 * float(self.radii[disc])), 0.5 * math.pi))
+        parts = max(1, math.ceil(abs(sweep) / turn - 1e-9))
         while True:
             angles = self._bearing(k) + sweep / parts * (np.arange(parts) + 0.5)
             reach = float(self.radii[disc]) / math.cos(sweep / parts / 2.0)

@@ -53,16 +53,17 @@ MEASURED_AT = 15.0
 
 def tracking_error(guidance: str, airspeed: float, wind: Wind) -> float:
     """Largest distance from a straight leg once it is captured, in a wind [m]."""
-    still = wind.turbulence == "none" and wind.speed == 0.0
-    if still:
-        return IN_STILL_AIR[guidance] * max(airspeed / MEASURED_AT, 1.0)
-    return TRACKING_ERROR[guidance][wind.turbulence]
+    still = IN_STILL_AIR[guidance] * max(airspeed / MEASURED_AT, 1.0)
+    if wind.turbulence == "none" and wind.speed == 0.0:
+        return still
+    return max(still, TRACKING_ERROR[guidance][wind.turbulence])
 
 
 def capture_distance(guidance: str, airspeed: float, wind: Wind) -> float:
     """Distance along a new leg until it is captured within the tracking error [m].
 
-    It grows with the ground speed, faster than in proportion to it (`benchmarks/vehicle_limits.py`).
+    That of L1 grows with the ground speed, faster than in proportion to it (`benchmarks/vehicle_limits.py`);
+    the paper's is taken as measured.
     """
     faster = max((airspeed + wind.speed + wind.gusts) / MEASURED_AT, 1.0)
     return CAPTURE_DISTANCE[guidance] * (faster**1.5 if guidance == "l1" else 1.0)

@@ -24,7 +24,7 @@ ALTITUDE = 200.0
 ROOM = 1000.0
 """Nothing that is new is nearer than its radius and this [m]."""
 NEAR = 400.0
-"""Nearer to a sphere than this the track is taken ten times a second, else once [m]."""
+"""Nearer to a sphere or the fence than this the track is taken ten times a second, else once [m]."""
 
 
 @dataclass(frozen=True)
@@ -163,7 +163,9 @@ def _flown(world: World, standing: list[Disc], points: tuple[Point, ...], hangar
         if decision.name != "keep":
             said.append(f"{now:.0f} s ({own.north:.0f}, {own.east:.0f}) {decision.name}: {decision.why}")
         vehicle.begin(decision)
-        steps = 10 if (distance - table[:, 4] < NEAR).any() else 1
+        here = np.array([[own.north, own.east]])
+        near = (distance - table[:, 4] < NEAR).any() or any(a.distance_to_edge(here)[0] < NEAR for a in fence)
+        steps = 10 if near else 1
         for step in range(1, steps + 1):
             vehicle.advance(1.0 / steps)
             if step < steps:

@@ -28,6 +28,24 @@ def test_a_gentle_corner_adds_its_chord() -> None:
     assert starts[0, 3].tolist() == [1000.0, 0.0]  # the turn begins in time: nothing is overshot
 
 
+def test_corners_nearer_than_the_acceptance_radius_are_passed_in_one_turn() -> None:
+    """Three of 50 degrees, 40 m apart: the vehicle may leave for the last leg 115 m before its corner."""
+    course = np.radians([0.0, 50.0, 100.0, 150.0])
+    lengths = np.array([1000.0, 40.0, 40.0, 1000.0])
+    steps = lengths[:, None] * np.column_stack([np.cos(course), np.sin(course)])
+    route = np.concatenate([np.zeros((1, 2)), np.cumsum(steps, axis=0)])[None]
+    starts, _, extra = flown_segments(route, None, PERFORMANCE)
+    radius, roll = PERFORMANCE.turn_radius, 15.0 * PERFORMANCE.roll_time
+    assert starts[0, 4].tolist() == [885.0, 0.0]
+    assert starts[0, 5].tolist() == pytest.approx(
+        [925.0 + roll, radius]
+    )  # by 100 degrees, 75 m before them all
+    assert starts[0, 6].tolist() == pytest.approx([965.0 + roll, radius])  # by 150 degrees
+    assert extra[0, 4:7].tolist() == pytest.approx([0.0, radius, radius])
+    alone, _, _ = flown_segments(route[:, :3], None, PERFORMANCE)
+    assert alone[0, 2].tolist() == starts[0, 4].tolist()  # earlier corners are as they are without
+
+
 def test_a_turn_that_begins_late_overshoots_the_new_leg() -> None:
     late = replace(PERFORMANCE, acceptance_radius=20.0, wind_bound=8.0)
     route = np.array([[[0.0, 0.0], [1000.0, 0.0], [1000.0, 1000.0]]])  # north, then a right angle to the east

@@ -36,7 +36,7 @@ def by_fifty(low: int, high: int) -> st.SearchStrategy[float]:
     return st.integers(low // 50, high // 50).map(lambda k: 50.0 * k)
 
 
-RADII = by_fifty(200, 1500)
+RADII = st.one_of(by_fifty(200, 1500), st.sampled_from([100.0, 20.0]))
 DISCS = st.builds(Disc, by_fifty(1500, 11_000), by_fifty(-3500, 3500), RADII)
 WALLS = st.builds(
     Walls,
@@ -126,6 +126,9 @@ FOUND = {
         ),
         wind=(5.0, 0.0),
         fence=(FenceArea(False, centre=(4600.0, 2300.0), radius=2400.0), field(250.0, 3650.0)),
+    ),
+    "the end of a narrow box, round which several waypoints were passed at once": World(
+        mission=((1950.0, -1250.0),), fence=(box(1600.0, -6000.0, 50.0, 6100.0),)
     ),
 }
 
