@@ -29,6 +29,7 @@ from avoidance.types import (
     Decision,
     Detour,
     Hold,
+    Ints,
     Keep,
     Ownship,
     Performance,
@@ -105,6 +106,7 @@ class Agent:
         self._no_way = NoWay()
         self._rest_version = -1
         self._rest_route: Route | None = None
+        self._flown_clear_of: Ints = np.empty(0, dtype=np.int64)
 
     def decide(self, own: Ownship, route: Route, scan: RadarScan) -> Decision:
         """Decide about one scan.
@@ -144,6 +146,8 @@ class Agent:
         self._second_thoughts.learn(decision, known)
         if decision is CLEAR:
             self._rest_version, self._rest_route = picture.version, route
+        if decision is CLEAR or decision.route is not None:
+            self._flown_clear_of = known.ids
         if isinstance(decision, Keep | Hold):
             self._checked_route, self._checked = route, picture.version
         if decision.route is not None:
@@ -167,7 +171,7 @@ class Agent:
             return replaced
         known = keep_what_can_be_kept(known, own, self._performance)
         slack = 0.0 if self._vigil.under_way else 1.0  # who circles would have to take the route up
-        blocked = first_blocked_leg(own, route, known, self._performance, slack=slack)
+        blocked = first_blocked_leg(own, route, self._strict_with_news(known), self._performance, slack=slack)
         uncut = route if blocked is None else replace(route, waypoints=route.waypoints[: blocked.leg])
         blocked = first_trap(own, uncut, known, self._performance, self._parameters) or blocked
         if blocked is None:
@@ -176,6 +180,11 @@ class Agent:
             return self._avoid(own, route, known, blocked)
         again = self._choose_again(own, route, known) or self._round_the_end(own, route, known)
         return self._resume(own, route, known) if again is None else again
+
+    def _strict_with_news(self, known: Known) -> Known:
+        """From what is new a route keeps everything; the slack is for what it was found to be clear of."""
+        news = ~np.isin(known.ids, self._flown_clear_of)
+        return replace(known, slack=np.where(news, 0.0, known.slack)) if news.any() else known
 
     def _avoid(self, own: Ownship, route: Route, known: Known, blocked: Blocked) -> Decision:
         if blocked.threat.moving:

@@ -103,7 +103,7 @@ class Vigil:
             return self._rally.hold(gap.own, refuge, gap.blocked)
         orbit = orbit_from_here(gap.own, gap.known, gap.performance)
         near = gap.blocked.threat.distance <= LAST_MOMENT * gap.performance.turn_radius
-        if orbit.clearance < 0.0 and not (near and _enters(gap)):
+        if orbit.clearance < 0.0 and not (near and _enters(gap, orbit.clearance)):
             return None
         self.under_way, self._refuge = True, None
         return hold_on(gap.own, orbit, gap.blocked)
@@ -116,15 +116,14 @@ class Vigil:
         return Keep(why=holding_words(gap.blocked, where), threat=gap.blocked.threat, rung=Rung.ORBIT)
 
 
-def _enters(gap: Gap) -> bool:
-    """True if the route leads into a sphere, and not only nearer to it than is to be kept.
+def _enters(gap: Gap, clearance: float) -> bool:
+    """True if the route leads deeper into a sphere than an orbit of a (negative) clearance [m].
 
-    With the tracking error, on the curve that will be flown: none that enters nothing is left for one that
-    does.
+    With the tracking error, on the curve that will be flown: none is left for an orbit that is worse.
     """
     known = replace(
         gap.known,
-        margin=gap.known.doubt + gap.performance.tracking_error,
+        margin=gap.known.doubt + gap.performance.tracking_error + clearance,
         slack=np.zeros_like(gap.known.slack),
     )
     return first_blocked_leg(gap.own, gap.route, known, gap.performance) is not None

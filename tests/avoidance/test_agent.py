@@ -9,6 +9,7 @@ from avoidance import Decision, Detour, Keep, RadarScan, Replace, Reroute, Resum
 from avoidance.agent import Agent
 from avoidance.flown import flown_segments
 from avoidance.geometry import segments_clearance
+from avoidance.known import kept_margin
 from avoidance.orbits import waypoint_room
 from avoidance.parameters import DEFAULT, PRESETS
 from avoidance.prediction import route_separation
@@ -167,3 +168,26 @@ def test_an_obstacle_and_an_intruder_together() -> None:
     assert decision.route is not None
     points = np.array([(45.0, 0.0), *((w.north, w.east) for w in decision.route)])
     assert route_separation(points[None], 15.0, intruders((9455.0, 0.0, -15.0, 0.0)))[0, 0] > 1000.0
+
+
+def said_of(offsets: list[float], away: float) -> list[str]:
+    """Decisions as the leg shifts towards a sphere whose centre lies `away` from where it was."""
+    agent, said = Agent(PERFORMANCE), []
+    for second, east in enumerate(offsets):
+        drifted = route((40_000.0, east), origin=(0.0, east))
+        own = ownship(north=15.0 * second, east=east, time=float(second))
+        said.append(agent.decide(own, drifted, scan([(9000.0, away)], time=float(second))).name)
+    return said
+
+
+@pytest.mark.parametrize(("lacking", "blocked"), [(-1.0, False), (6.0, True)])
+def test_everything_is_kept_from_what_is_new(lacking: float, blocked: bool) -> None:
+    keep = 1000.0 + kept_margin(DEFAULT, PERFORMANCE)
+    assert ("detour" in said_of([0.0] * 3, keep - lacking)) == blocked
+
+
+@pytest.mark.parametrize(("drift", "blocked"), [(6.0, False), (12.0, True)])
+def test_a_route_found_clear_has_some_slack(drift: float, blocked: bool) -> None:
+    """As much as the vehicle may stray."""
+    keep = 1000.0 + kept_margin(DEFAULT, PERFORMANCE)
+    assert ("detour" in said_of([0.0] * 3 + [drift] * 2, keep + 1.0)) == blocked

@@ -126,9 +126,12 @@ def test_a_hold_ends_when_only_a_later_leg_far_ahead_is_blocked() -> None:
     assert "no way round is known yet" in decision.why
 
 
-@pytest.mark.parametrize(("aside", "held"), [(1008.0, False), (990.0, True)])
-def test_no_route_that_enters_nothing_is_left_for_a_circle_that_does(aside: float, held: bool) -> None:
-    """Where a corridor without room to circle in ends between two spheres, nearer than is to be kept."""
+@pytest.mark.parametrize(("aside", "held"), [(1008.0, False), (990.0, False), (900.0, True)])
+def test_no_route_is_left_for_a_circle_that_enters_deeper(aside: float, held: bool) -> None:
+    """Where a corridor without room to circle in ends between two spheres, nearer than is to be kept.
+
+    The circle would enter by some 75 m.
+    """
     places = [*((200.0 * k, 1040.0) for k in range(15, 35)), (7000.0, aside)]
     walls = [(north, side * east) for north, east in places for side in (-1, 1)]
     contacts = [Contact(k, *place, 200.0) for k, place in enumerate(walls)]
