@@ -182,7 +182,7 @@ class Agent:
         return self._resume(own, route, known) if again is None else again
 
     def _strict_with_news(self, known: Known) -> Known:
-        """From what is new a route keeps everything; the slack is for what it was found to be clear of."""
+        """No slack for what is new: it is for straying from a route that was found to be clear."""
         news = ~np.isin(known.ids, self._flown_clear_of)
         return replace(known, slack=np.where(news, 0.0, known.slack)) if news.any() else known
 

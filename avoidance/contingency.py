@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from avoidance.flown import SEQUENCING_DELAY, late_turn
+from avoidance.flown import early_turn, late_turn
 from avoidance.geofence import FENCE, Walls
 from avoidance.geometry import segments_clearance
 from avoidance.known import Circles, Known
@@ -137,7 +137,7 @@ def _corner_room(turn: Floats, performance: Performance) -> Floats:
     of its orbits lie on an arc from that of the one course to that of the other, whose chord is tested.
     """
     turn = np.minimum(turn, SHARP)
-    run = performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
+    run = early_turn(performance)
     off = np.maximum(run * np.sin(0.5 * turn), late_turn(turn, performance) * np.sin(turn))
     return np.asarray(off + (1.0 - np.cos(0.5 * turn)) * _swing(performance))
 
@@ -172,7 +172,7 @@ def _narrow(
     unit = (end - begin) / length
     radii = circles.hard[near] + widest
     at = _places(unit, begin, length, circles.centres[near], radii, (walls if fenced else Walls(), widest))
-    run = performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
+    run = early_turn(performance)
     places, circle = begin + at[:, None] * unit, (circles.centres[near], circles.hard[near])
     centres = orbit_centres(places, courses[1:2], performance)
     margins = _margins(centres, centres, *circle, walls)

@@ -12,7 +12,7 @@ import numpy as np
 
 from avoidance.constraints import feasible_segments
 from avoidance.contingency import room_outside
-from avoidance.flown import SEQUENCING_DELAY, as_complex, as_pairs, flown_segments
+from avoidance.flown import as_complex, as_pairs, early_turn, flown_segments
 from avoidance.geometry import point_distances, segments_clearance
 from avoidance.problem import WaypointProblem
 from avoidance.tangent_graph import shortest_path
@@ -44,12 +44,11 @@ def exact_route(
 ) -> Corners | None:
     """Waypoints of the shortest path round everything known that can be flown, or None if over `longest` [m].
 
-    What is over it is the path along arcs; that of the waypoints is a little longer.
-
-    The path keeps `room`, shape (d,) or one for all, more from each obstacle that is not nearer to its ends
-    [m]; of the flown curve, with its turns, that is not asked. First with what leaves room for orbits beside;
-    where that shuts the way, with hardly any. Intruders are not considered. No waypoints at all: the straight
-    way leads out of a margin that the vehicle is already inside.
+    `longest` bounds the path along arcs; the way by the waypoints is a little longer. The path keeps `room`,
+    shape (d,) or one for all, more from each obstacle that is not nearer to its ends [m]; of the flown curve,
+    with its turns, that is not asked. First with what leaves room for orbits beside; where that shuts the
+    way, with hardly any. Intruders are not considered. No waypoints at all: the straight way leads out of a
+    margin that the vehicle is already inside.
     """
     performance = problem.performance
     beside = room_outside(performance, LARGEST_CORNER) - problem.parameters.margin
@@ -58,6 +57,12 @@ def exact_route(
         if route is not None:
             return route
     return None
+
+
+def length_by(problem: WaypointProblem, waypoints: Corners) -> float:
+    """Length of the way from the start by some waypoints to the target [m]."""
+    corners = (problem.start, *waypoints, problem.target)
+    return sum(math.dist(a, b) for a, b in pairwise(corners))
 
 
 def _as_flown(problem: WaypointProblem, room: Floats | float, pad: float, longest: float) -> Corners | None:
@@ -78,14 +83,15 @@ def _as_flown(problem: WaypointProblem, room: Floats | float, pad: float, longes
         path = shortest_path(problem.start, problem.target, problem.centres, radii, walls, longest)
         if path is None:
             return None
-        corners = path.polyline(LARGEST_CORNER, _run(problem.performance))
+        corners = path.polyline(LARGEST_CORNER, early_turn(problem.performance))
         lacking, outside = _shortfalls(problem, corners)
         if not lacking.any() and outside <= 0.0:
             return _waypoints(corners)
         for turned in _turned_aside(problem, corners, np.minimum(radii, problem.keep + room)):
             lacking, outside = _shortfalls(problem, turned)
             if not lacking.any() and outside <= 0.0:
-                return _waypoints(turned) if _length(turned) < longest else None
+                route = _waypoints(turned)
+                return route if length_by(problem, route) < longest else None
         wider = 2.0 * outside + 1.0 if outside > 0.0 else 0.0
         keep = keep + np.maximum(np.where(lacking > 0.0, 2.0 * lacking + 1.0, 0.0), wider)
         walled += wider
@@ -126,7 +132,7 @@ def _not_passed_at_once(problem: WaypointProblem) -> float:
     Where a waypoint is reached, that may happen at its acceptance radius.
     """
     performance = problem.performance
-    early = 0.0 if problem.before is None else _run(performance)
+    early = 0.0 if problem.before is None else early_turn(performance)
     return early + performance.acceptance_radius + 2.0 * performance.turn_radius
 
 
@@ -142,22 +148,13 @@ def _waypoints(corners: Floats) -> Corners:
     return tuple((float(point[0]), float(point[1])) for point in corners[1:-1])
 
 
-def _length(corners: Floats) -> float:
-    return sum(math.dist(a, b) for a, b in pairwise(corners))
-
-
 def _cut(performance: Performance) -> float:
     """How far the corners of an exact route, which lie outside of a circle, are cut towards it at most [m].
 
     The vehicle leaves a leg up to `run` before the corner and is led on to the next one, which touches the
     circle halfway.
     """
-    return 0.5 * _run(performance) * math.sin(LARGEST_CORNER)
-
-
-def _run(performance: Performance) -> float:
-    """How far before a corner the vehicle may turn [m]; several corners within that are passed at once."""
-    return performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
+    return 0.5 * early_turn(performance) * math.sin(LARGEST_CORNER)
 
 
 def flyable(problem: WaypointProblem, corners: Floats) -> bool:

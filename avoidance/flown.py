@@ -74,14 +74,13 @@ def flown_lines(
     starts[:, :many], ends[:, :many] = corners[:, :-1], corners[:, 1:]
     if many > 1:
         bend, before, after = corners[:, 1:-1], units[:, :-1], units[:, 1:]
-        run = performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
+        run = early_turn(performance)
         product = np.conj(before) * after
-        entry = bend - np.minimum(run, lengths[:, :-1]) * before
+        entry, ahead, turned = bend - np.minimum(run, lengths[:, :-1]) * before, before, product
         if many > 2 and (lengths[:, 1:-1] < run).any():
-            entry, old = _far_entries(corners, units, lengths, run, entry)
-            starts[:, bends[0]], extra[:, bends[0]] = _turn(entry, old, np.conj(old) * after, performance)
-        else:
-            starts[:, bends[0]], extra[:, bends[0]] = _turn(entry, before, product, performance)
+            entry, ahead = _far_entries(corners, units, lengths, run, entry)
+            turned = np.conj(ahead) * after
+        starts[:, bends[0]], extra[:, bends[0]] = _turn(entry, ahead, turned, performance)
         capture = np.minimum(performance.capture_distance, lengths[:, 1:])
         ends[:, bends[0]] = ends[:, bends[1]] = bend + capture * after
         starts[:, bends[1]], extra[:, bends[1]] = _overshoot(bend, before, product, capture, performance)
@@ -108,6 +107,11 @@ def _far_entries(
     far = corners[row, leg] + (at - along[row, leg]) * units[row, leg]
     short = lengths[:, :-1] < run
     return np.where(short, far, entry), np.where(short, units[row, leg], units[:, :-1])
+
+
+def early_turn(performance: Performance) -> float:
+    """How far before a corner the vehicle may turn [m]; several corners within that are passed at once."""
+    return performance.acceptance_radius + SEQUENCING_DELAY * performance.airspeed
 
 
 def late_turn(turn: Floats, performance: Performance) -> Floats:

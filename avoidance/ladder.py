@@ -11,11 +11,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 
-from avoidance.exact_route import Corners, exact_route, flyable
+from avoidance.exact_route import Corners, exact_route, flyable, length_by
 from avoidance.geometry import point_distances, segment_point_distance
 from avoidance.problem import WaypointProblem
 from avoidance.search import search_waypoint
@@ -88,25 +87,25 @@ def way_round(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None
 def _cheapest(problem: WaypointProblem, plan: Plan, rng: np.random.Generator) -> Plan:
     """The plan, or one further down the ladder if that is much shorter."""
     relaxing, several = _worth(problem)
-    length = _length(problem, plan.waypoints)
+    length = length_by(problem, plan.waypoints)
     straight = math.dist(problem.start, problem.target)
     if length - straight < relaxing:
         return plan
     if len(problem.intruders) > 1 and length - straight > LONG_WAY:
         route, lacking = _through_traffic(problem, rng)
-        if route is not None and lacking <= 0.0 and _length(problem, route) < length - several:
-            return Plan(Rung.ROUTE, route, plan.search, length - _length(problem, route))
+        if route is not None and lacking <= 0.0 and length_by(problem, route) < length - several:
+            return Plan(Rung.ROUTE, route, plan.search, length - length_by(problem, route))
     first, least = length, _at_least(problem)
     if plan.rung is not Rung.CLOSE and length - least >= relaxing:
         close = replace(problem, relaxed=RUNGS[-1][1], longest=length - relaxing)
         search = search_waypoint(close, rng)
-        if search.found is not None and _length(problem, (search.found,)) < close.longest:
-            length = _length(problem, (search.found,))
+        if search.found is not None and length_by(problem, (search.found,)) < close.longest:
+            length = length_by(problem, (search.found,))
             plan = Plan(Rung.CLOSE, (search.found,), search, first - length)
     if length - least < several:
         return plan
     route = _kept_from_intruders(problem, exact_route(problem, length - several))
-    return plan if not route else Plan(Rung.ROUTE, route, plan.search, first - _length(problem, route))
+    return plan if not route else Plan(Rung.ROUTE, route, plan.search, first - length_by(problem, route))
 
 
 def _at_least(problem: WaypointProblem) -> float:
@@ -198,8 +197,3 @@ def _any_way(problem: WaypointProblem) -> bool:
     free_target = point_distances(problem.centres, problem.target) - 0.5
     radii = np.maximum(np.minimum(np.minimum(problem.keep, free_start), free_target), 0.0)
     return shortest_path(problem.start, problem.target, problem.centres, radii, problem.walls) is not None
-
-
-def _length(problem: WaypointProblem, waypoints: Corners) -> float:
-    corners = (problem.start, *waypoints, problem.target)
-    return sum(math.dist(a, b) for a, b in pairwise(corners))

@@ -80,9 +80,9 @@ def passage_room(performance: Performance, margin: float) -> float:
 
     Half of what is needed on one side, in bends as well, and of what an orbit needs on the other side.
     """
-    beside = max(reach_across(performance), margin) - margin
-    turning = turning_room(performance) + BENDS * performance.turn_radius - margin
-    return 0.5 * max(turning + beside, 0.0)
+    beside = max(reach_across(performance), margin)
+    wide = turning_room(performance) + BENDS * performance.turn_radius + beside
+    return 0.5 * max(wide - 2.0 * margin, 0.0)
 
 
 def _acted_upon(performance: Performance) -> float:

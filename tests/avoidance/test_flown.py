@@ -37,10 +37,9 @@ def test_corners_nearer_than_the_acceptance_radius_are_passed_in_one_turn() -> N
     starts, _, extra = flown_segments(route, None, PERFORMANCE)
     radius, roll = PERFORMANCE.turn_radius, 15.0 * PERFORMANCE.roll_time
     assert starts[0, 4].tolist() == [885.0, 0.0]
-    assert starts[0, 5].tolist() == pytest.approx(
-        [925.0 + roll, radius]
-    )  # by 100 degrees, 75 m before them all
-    assert starts[0, 6].tolist() == pytest.approx([965.0 + roll, radius])  # by 150 degrees
+    # by 100 and by 150 degrees, 75 and 35 m before them all
+    assert starts[0, 5].tolist() == pytest.approx([925.0 + roll, radius])
+    assert starts[0, 6].tolist() == pytest.approx([965.0 + roll, radius])
     assert extra[0, 4:7].tolist() == pytest.approx([0.0, radius, radius])
     alone, _, _ = flown_segments(route[:, :3], None, PERFORMANCE)
     assert alone[0, 2].tolist() == starts[0, 4].tolist()  # earlier corners are as they are without

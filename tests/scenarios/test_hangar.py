@@ -120,19 +120,17 @@ def test_legs_are_kept_to_as_promised(fidelity, speed):
         north = points[-1].north + 1500.0 * math.cos(course)
         points.append(Point(north, points[-1].east + 1500.0 * math.sin(course), 200.0))
         course += rng.choice((-1.0, 1.0)) * rng.uniform(1.5, math.pi)
-    with Hangar(
-        replace(scenario, mission=tuple(points), wind=wind, vehicle=vehicle), preset("default")
-    ) as hangar:
+    flight = replace(scenario, mission=tuple(points), wind=wind, vehicle=vehicle)
+    with Hangar(flight, preset("default")) as hangar:
         own, looked = hangar.own_vehicle(), 0
         while not own.finished:
             own.advance(0.5)
             here, route = own.state().ownship, own.route()
             if not route.waypoints:
                 break
-            leg = complex(
-                route.waypoints[0].north - route.origin.north, route.waypoints[0].east - route.origin.east
-            )
-            off = complex(here.north - route.origin.north, here.east - route.origin.east) / (leg / abs(leg))
+            begin, end = (complex(w.north, w.east) for w in (route.origin, route.waypoints[0]))
+            leg = end - begin
+            off = (complex(here.north, here.east) - begin) / (leg / abs(leg))
             if own.performance.capture_distance <= off.real <= abs(leg):
                 looked += 1
                 assert abs(off.imag) <= own.performance.tracking_error
