@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
+from avoidance.geometry import distances
 from avoidance.types import Floats, Ints
 
 
-def clusters(positions: Floats, radii: Floats, link_distance: float, join_spheres: bool) -> Ints:
-    """Group obstacles that belong together: hills.
+def cluster_of(one: int, positions: Floats, radii: Floats, link_distance: float, join_spheres: bool) -> Ints:
+    """The hill that an obstacle is part of.
 
     Parameters
     ----------
+    one : int
+        Row of the obstacle.
     positions : array, shape (n, 2)
         Obstacles [m].
     radii : array, shape (n,)
@@ -23,27 +26,22 @@ def clusters(positions: Floats, radii: Floats, link_distance: float, join_sphere
 
     Returns
     -------
-    array, shape (n,)
-        Label of the group that each belongs to.
+    array, shape (m,)
+        Rows of the obstacles that belong together with it, itself among them, ascending.
 
     Notes
     -----
     Algorithm 3, single linkage. Differs from the paper: E36, spheres of 1 km leave no gap although their
     centres are 1 to 2 km apart; with `join_spheres` what cannot be passed is treated as one.
     """
-    count = len(positions)
-    if count == 0:
-        return np.empty(0, dtype=np.int64)
-    offset = positions[:, None] - positions[None]
-    distance = np.hypot(offset[..., 0], offset[..., 1])
-    linked = distance < link_distance
-    if join_spheres:
-        linked |= distance < radii[:, None] + radii[None]
-    np.fill_diagonal(linked, val=True)
-    labels = np.arange(count)
-    while True:  # each obstacle takes the least label among its neighbours until nothing changes
-        least = np.where(linked, labels[None], count).min(axis=1)
-        least = least[least]
-        if np.array_equal(least, labels):
-            return np.asarray(labels, dtype=np.int64)
-        labels = least
+    members = np.zeros(len(positions), dtype=np.bool_)
+    members[one] = True
+    last = np.array([one])
+    while len(last):
+        distance = distances(positions[last], positions)
+        linked = distance < link_distance
+        if join_spheres:
+            linked |= distance < radii[last, None] + radii
+        last = np.flatnonzero(linked.any(axis=0) & ~members)
+        members[last] = True
+    return np.flatnonzero(members)

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from avoidance.clusters import clusters
+from avoidance.clusters import cluster_of
 from avoidance.conflicts import wind_estimate
 from avoidance.known import Known
 from avoidance.ladder import Plan
@@ -57,9 +57,10 @@ def search_problem(
     places = [(own.north, own.east), *((w.north, w.east) for w in waypoints)]
     heights = (waypoints[begin - 1].altitude if begin else own.altitude, waypoints[end].altitude)
     circles = known.circles(min(heights), max(heights))
-    labels = clusters(circles.centres, circles.keep, parameters.link_distance, parameters.all_obstacles)
-    nearest = np.flatnonzero(circles.rows[:, None] == blocked.blockers[:1])
-    avoided = np.flatnonzero(labels == labels[nearest[0]]) if len(nearest) else nearest
+    avoided = np.flatnonzero(circles.rows[:, None] == blocked.blockers[:1])
+    if len(avoided):
+        links = circles.centres, circles.keep, parameters.link_distance, parameters.all_obstacles
+        avoided = cluster_of(int(avoided[0]), *links)
     flown = sum(math.dist(a, b) for a, b in pairwise(places[: begin + 1]))
     problem = WaypointProblem(
         start=places[begin],

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -76,6 +76,7 @@ class Known:
     """Radar identities of what moves, shape (q,)."""
     intruders: Intruders
     """Where it is, how it moves, and the distance to keep."""
+    _cut: dict[tuple[float, float], Circles] = field(default_factory=dict, init=False, repr=False)
 
     def circles(self, low: float, high: float) -> Circles:
         """The circles that count between two altitudes [m].
@@ -85,6 +86,11 @@ class Known:
         Spheres are cut at the altitude between `low` and `high`, give or take the vehicle's tolerance, that
         is nearest to their centre; one more than its radius above or below does not count.
         """
+        if (low, high) not in self._cut:
+            self._cut[low, high] = self._circles(low, high)
+        return self._cut[low, high]
+
+    def _circles(self, low: float, high: float) -> Circles:
         above = np.maximum(self.altitudes - high, low - self.altitudes) - ALTITUDE_TOLERANCE
         fence = self.ids == FENCE
         height = np.where(fence, 0.0, np.maximum(above, 0.0))

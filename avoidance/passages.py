@@ -83,14 +83,14 @@ class Gap:
         ]
         return lengths[0] - lengths[1]
 
-    def trap(self, plan: Plan) -> Blocked | None:
-        """The first stretch of a plan along which no orbit in free space can be begun for too long.
+    def trap(self, way: Decision) -> Blocked | None:
+        """The first stretch of a way round along which no orbit in free space can be begun for too long.
 
         Only up to the target: what lies behind it may still be blocked, and is then another gap.
         """
         here = Waypoint(self.own.north, self.own.east, self.own.altitude)
-        ahead = self.way(plan).route or self.route.waypoints
-        planned = Route(here, ahead[: self.begin + len(plan.waypoints) + 1])
+        ahead = way.route or self.route.waypoints
+        planned = Route(here, ahead[: self.begin + len(self.taken(way)) + 1])
         return first_trap(self.own, planned, self.known, self.performance, self.parameters)
 
 
@@ -112,26 +112,30 @@ def way_with_orbits(gap: Gap, planner: Way, rng: np.random.Generator) -> Decisio
     passage, so much is kept from what lies on one side of it that an orbit fits in there, then on the other
     side, then on both: work for the exact planner. An intruder is evaded even into a narrow passage.
     """
-    problem, moving = gap.problem, gap.blocked.threat.moving
+    problem = gap.problem
     passage = np.array([problem.start, problem.target])
-    shortest: Plan | None = None
+    shortest: Decision | None = None
     if not gap.blocked.threat.narrow:
-        shortest = _plan(gap, problem, planner, rng)
-        if shortest is None:
+        plan = _plan(gap, problem, planner, rng)
+        if plan is None:
             return None
+        shortest = gap.way(plan)
         trap = gap.trap(shortest)
         if trap is None:
-            return gap.way(shortest)
-        corners = np.array([problem.start, *shortest.waypoints, problem.target])
+            return shortest
+        corners = np.array([problem.start, *plan.waypoints, problem.target])
         passage = corners[: max(trap.leg - gap.begin, 0) + 2]
     rooms = list(_rooms(gap, passage))
     if shortest is None:
         rooms.insert(0, np.zeros(len(problem.keep)))
     for room in rooms:
         plan = exact_plan(problem, room)
-        if plan is not None and gap.trap(plan) is None:
-            return gap.way(plan)
-    return gap.way(shortest) if shortest is not None and moving else None
+        if plan is None:
+            continue
+        wide = gap.way(plan)
+        if gap.trap(wide) is None:
+            return wide
+    return shortest if gap.blocked.threat.moving else None
 
 
 def _rooms(gap: Gap, passage: Floats) -> Iterator[Floats]:

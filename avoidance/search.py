@@ -42,10 +42,14 @@ class Optimiser(Protocol):
 
 
 HOPELESS = 3
-"""Rule seeds find a feasible point if there is one; a swarm that has none after so many iterations stops."""
+"""Rule seeds find a feasible point if there is one; a swarm that has none after so many iterations stops.
+
+And they find the best one but for centimetres: from a feasible point on, the first iteration that does not
+improve on it is the last.
+"""
 
 OUT_OF_PLACE = 2.0 * INFEASIBLE
-"""Rank of seeds that break a constraint by their own place or legs, where no swarm sets out from them."""
+"""Rank of seeds that break a constraint by their own place or legs, where it does not matter by how much."""
 
 OPTIMISERS: dict[str, type[Optimiser]] = {
     "pso": Pso,
@@ -82,7 +86,10 @@ def search_waypoint(problem: WaypointProblem, rng: np.random.Generator) -> Searc
     evaluations, useful = 0, True
     if parameters.rule_seeds:
         seeds, ranks, evaluations = rule_seeds(problem, settings.particles)
-        useful = math.isinf(problem.longest) or bool(ranks[0] < INFEASIBLE)
+        found = bool(ranks[0] < INFEASIBLE)
+        useful = found or math.isinf(problem.longest)
+        if found or not useful:
+            ranks = np.where(np.isnan(ranks), OUT_OF_PLACE, ranks)
     else:
         seeds = sphere_seeds(problem, settings.particles, rng)
         ranks = np.full(len(seeds), np.nan)
@@ -90,21 +97,19 @@ def search_waypoint(problem: WaypointProblem, rng: np.random.Generator) -> Searc
     iterations = 0
     first_feasible: int | None = None
     while not optimiser.finished and (useful or not iterations):
-        points = optimiser.ask()
-        known = iterations == 0 and np.array_equal(points, seeds)
-        if known and not useful:
-            ranks = np.where(np.isnan(ranks), OUT_OF_PLACE, ranks)  # not of interest by how much they are
-        if known and not np.isnan(ranks).any():
+        before, points = optimiser.best_cost, optimiser.ask()
+        if not iterations and np.array_equal(points, seeds) and not np.isnan(ranks).any():
             optimiser.tell(ranks)
         else:
             optimiser.tell(problem.rank(points))
             evaluations += len(points)
         iterations += 1
-        if first_feasible is None:
-            if optimiser.best_cost < INFEASIBLE:
-                first_feasible = iterations
-            elif parameters.rule_seeds and iterations >= HOPELESS:
-                break
+        feasible = optimiser.best_cost < INFEASIBLE
+        if feasible and first_feasible is None:
+            first_feasible = iterations
+        idle = before - optimiser.best_cost < settings.stop_change
+        if parameters.rule_seeds and (idle if feasible else iterations >= HOPELESS):
+            break
     feasible = optimiser.best_cost < INFEASIBLE
     best = (float(optimiser.best[0]), float(optimiser.best[1]))
     return Search(

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from avoidance.clusters import clusters
 from avoidance.flown import turn_angle
 from avoidance.geometry import segments_clearance
 from avoidance.types import Floats
@@ -18,7 +17,6 @@ SAME = 50.0
 """A waypoint within this of one of the mission's is that one (Table 4 moves the third by 10 and 20 m) [m]."""
 TOLERANCE = 1000.0
 SEARCH_LIMIT = 4000.0
-LINK = 1000.0
 TURN_LIMIT = math.radians(30.0)
 ROUNDING = 0.05
 """Lists are printed and stored in whole or tenths of metres; a breach below this is none [m]."""
@@ -31,7 +29,7 @@ class NewWaypoint:
     place: tuple[float, float]
     """North and east [m]."""
     nearest: float
-    """Distance to the nearest obstacle of the cluster it avoids [m]."""
+    """Distance to the nearest obstacle [m]."""
     turn: float
     """Heading change there [rad]."""
 
@@ -88,7 +86,7 @@ def measure(
     rs = paper.safety_radius if radius is None else radius
     steps = np.diff(points, axis=0)
     gaps = segments_clearance(points[:-1], points[1:], centres)
-    new = tuple(_new_waypoints(points, centres, known, rs))
+    new = tuple(_new_waypoints(points, centres, known))
     broken = []
     if any(w.nearest < rs + TOLERANCE - ROUNDING for w in new):
         broken.append("g1")
@@ -101,17 +99,15 @@ def measure(
     return Measure(float(np.hypot(*steps.T).sum()), float(gaps.min()), new, tuple(broken))
 
 
-def _new_waypoints(points: Floats, centres: Floats, known: Floats, radius: float) -> list[NewWaypoint]:
-    labels = clusters(centres, np.full(len(centres), radius), LINK, False)
+def _new_waypoints(points: Floats, centres: Floats, known: Floats) -> list[NewWaypoint]:
     found = []
     for before, point, after in zip(points, points[1:], points[2:], strict=False):
         if np.hypot(*(known - point).T).min() <= SAME:
             continue
-        away = np.hypot(*(centres - point).T)
-        avoided = labels == labels[int(np.argmin(away))]
+        away = float(np.hypot(*(centres - point).T).min())
         incoming, outgoing = _unit(point - before), _unit(after - point)
         turn = float(turn_angle(incoming[None], outgoing[None])[0])
-        found.append(NewWaypoint((float(point[0]), float(point[1])), float(away[avoided].min()), turn))
+        found.append(NewWaypoint((float(point[0]), float(point[1])), away, turn))
     return found
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from avoidance import Contact, RadarScan
-from avoidance.clusters import clusters
+from avoidance.clusters import cluster_of
 from avoidance.known import known_obstacles
 from avoidance.parameters import DEFAULT, PAPER, Parameters
 from avoidance.picture import Picture
@@ -118,17 +118,17 @@ def test_noise_does_not_make_obstacles_move() -> None:
 
 def test_clusters_are_single_linkage() -> None:
     places = np.array([[0.0, 0.0], [900.0, 0.0], [1800.0, 0.0], [4000.0, 0.0]])
-    labels = clusters(places, np.full(4, 1000.0), 1000.0, join_spheres=False)
-    assert labels[0] == labels[1] == labels[2] != labels[3]
+    links = places, np.full(4, 1000.0), 1000.0, False
+    assert [cluster_of(one, *links).tolist() for one in range(4)] == [[0, 1, 2]] * 3 + [[3]]
 
 
 def test_overlapping_spheres_leave_no_gap() -> None:
     """Erratum E36: centres 1.5 km apart are "scattered" but cannot be passed between."""
     places = np.array([[0.0, 0.0], [1500.0, 0.0]])
-    apart = clusters(places, np.full(2, 1000.0), 1000.0, join_spheres=False)
-    joined = clusters(places, np.full(2, 1000.0), 1000.0, join_spheres=True)
-    assert apart[0] != apart[1]
-    assert joined[0] == joined[1]
+    apart = cluster_of(0, places, np.full(2, 1000.0), 1000.0, join_spheres=False)
+    joined = cluster_of(0, places, np.full(2, 1000.0), 1000.0, join_spheres=True)
+    assert apart.tolist() == [0]
+    assert joined.tolist() == [0, 1]
 
 
 def test_a_climb_is_shown_when_it_is_significant() -> None:
