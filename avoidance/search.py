@@ -44,7 +44,7 @@ class Optimiser(Protocol):
 HOPELESS = 3
 """Rule seeds find a feasible point if there is one; a swarm that has none after so many iterations stops.
 
-And they find the best one but for centimetres: from a feasible point on, the first iteration that does not
+And they find the best one but for a metre: from a feasible point on, the first iteration that does not
 improve on it is the last.
 """
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -36,6 +37,13 @@ def test_the_default_planner_is_within_a_thousandth_of_the_best(seed: int) -> No
     gap = search_gap(search)
     assert gap is not None
     assert 0.0 <= gap <= 0.001
+
+
+def test_a_swarm_that_does_not_improve_on_the_rules_stops_at_once() -> None:
+    """The seeds and one iteration; from seeds about the sphere it goes on for as long as it improves."""
+    rng = np.random.default_rng(0)
+    assert search_waypoint(problem(SINGLE), rng).iterations == 2
+    assert search_waypoint(problem(SINGLE, parameters=replace(DEFAULT, rule_seeds=False)), rng).iterations > 3
 
 
 def test_the_shorter_side_is_taken() -> None:
