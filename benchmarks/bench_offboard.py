@@ -17,6 +17,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -141,13 +142,11 @@ def flights() -> None:
                 live, twin = Path(folder) / "live", Path(folder) / "twin"
                 cli = [sys.executable, "-m", "scenarios.cli"]
                 url = f"udpin://127.0.0.1:{port}"
-                quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-                subprocess.run([*cli, "fly", scenario, "-o", str(twin)], check=False, **quiet)
-                subprocess.run(
-                    [*cli, "offboard", "--connect", url, "--mission", scenario, "-o", str(live)],
-                    check=False,
-                    **quiet,
+                run = partial(
+                    subprocess.run, check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
                 )
+                run([*cli, "fly", scenario, "-o", str(twin)])
+                run([*cli, "offboard", "--connect", url, "--mission", scenario, "-o", str(live)])
                 summary = json.loads((live / "summary.json").read_text())
                 mine, other = injected(live), injected(twin)
                 apart = [math.dist(a, b) for a, b in zip(mine, other, strict=False)]

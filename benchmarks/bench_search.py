@@ -20,7 +20,7 @@ from collections.abc import Callable
 import numpy as np
 
 from avoidance import Performance
-from avoidance.clusters import clusters
+from avoidance.clusters import cluster_of
 from avoidance.parameters import DEFAULT
 from avoidance.prediction import Intruders
 from avoidance.problem import WaypointProblem, search_box, straight_cost
@@ -57,7 +57,7 @@ def random_problem(rng: np.random.Generator, *, clustered: bool) -> WaypointProb
         if gap.min() < keep and ends.min() > keep + 2.0 * PERFORMANCE.turn_radius:
             break
     first = int(np.argmin(np.where(gap < keep, centres[:, 0], math.inf)))
-    labels = clusters(centres, np.full(count, keep), DEFAULT.link_distance, DEFAULT.all_obstacles)
+    links = centres, np.full(count, keep), DEFAULT.link_distance, DEFAULT.all_obstacles
     return WaypointProblem(
         start=(0.0, 0.0),
         target=(length, 0.0),
@@ -66,7 +66,7 @@ def random_problem(rng: np.random.Generator, *, clustered: bool) -> WaypointProb
         centres=centres,
         keep=np.full(count, keep),
         keep_waypoint=np.full(count, RADIUS + DEFAULT.tolerance),
-        avoided=np.flatnonzero(labels == labels[first]),
+        avoided=cluster_of(first, *links),
         intruders=Intruders(),
         delay=0.0,
         performance=PERFORMANCE,
