@@ -10,7 +10,7 @@ import numpy as np
 from avoidance.orbits import Orbit, orbit_from_here
 from avoidance.passages import Gap
 from avoidance.rally import Rally
-from avoidance.route_check import Blocked, first_blocked_leg
+from avoidance.route_check import FENCE_SLACK, Blocked, first_blocked_leg
 from avoidance.types import Decision, Hold, Keep, Ownship, Replace, Route, Rung, Waypoint
 from avoidance.words import threat_words
 
@@ -22,6 +22,9 @@ PATIENCE = 20
 """A mission item that no route leads to is given up after so many attempts from where the vehicle waits."""
 LAST_MOMENT = 4.0
 """Nearer to a sphere that its route enters than this many turn radii the vehicle turns, whatever the room."""
+
+CROSSED = 0.1
+"""What comes this near to the fence crosses it [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -117,14 +120,17 @@ class Vigil:
 
 
 def _enters(gap: Gap, clearance: float) -> bool:
-    """True if the route leads deeper into a sphere than an orbit of a (negative) clearance [m].
+    """True if the route leads deeper into a sphere, or over the fence, than an orbit does.
 
-    With the tracking error, on the curve that will be flown: none is left for an orbit that is worse.
+    `clearance` is the orbit's, below zero [m]. With the tracking error, on the curve that will be flown: no
+    route is left for an orbit that is worse.
     """
+    allowed = gap.performance.tracking_error + clearance
     known = replace(
         gap.known,
-        margin=gap.known.doubt + gap.performance.tracking_error + clearance,
+        margin=gap.known.doubt + allowed,
         slack=np.zeros_like(gap.known.slack),
+        walls=replace(gap.known.walls, room=FENCE_SLACK + max(allowed, CROSSED)),
     )
     return first_blocked_leg(gap.own, gap.route, known, gap.performance) is not None
 

@@ -30,7 +30,7 @@ class SwarmSettings:
     stop_change: float = 1e-5
     """Stop when the best changes by less than this ..."""
     stop_iterations: int = 2
-    """... in as many iterations running."""
+    """... in as many iterations running; in one, where the rules have found the best already."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
@@ -42,11 +43,7 @@ class Optimiser(Protocol):
 
 
 HOPELESS = 3
-"""Rule seeds find a feasible point if there is one; a swarm that has none after so many iterations stops.
-
-And they find the best one but for a metre: from a feasible point on, the first iteration that does not
-improve on it is the last.
-"""
+"""Rule seeds find a feasible point if there is one; a swarm that has none after so many iterations stops."""
 
 OUT_OF_PLACE = 2.0 * INFEASIBLE
 """Rank of seeds that break a constraint by their own place or legs, where it does not matter by how much."""
@@ -79,7 +76,8 @@ def search_waypoint(problem: WaypointProblem, rng: np.random.Generator) -> Searc
 
     Notes
     -----
-    Algorithm 10.
+    Algorithm 10. Where nothing moves the rules find the best point but for centimetres: a planner that sets
+    out from it stops at the first iteration that brings nothing, not after `SwarmSettings.stop_iterations`.
     """
     parameters = problem.parameters
     settings = parameters.swarm
@@ -90,6 +88,8 @@ def search_waypoint(problem: WaypointProblem, rng: np.random.Generator) -> Searc
         useful = found or math.isinf(problem.longest)
         if found or not useful:
             ranks = np.where(np.isnan(ranks), OUT_OF_PLACE, ranks)
+        if found and not len(problem.intruders):
+            settings = replace(settings, stop_iterations=1)
     else:
         seeds = sphere_seeds(problem, settings.particles, rng)
         ranks = np.full(len(seeds), np.nan)
@@ -97,19 +97,18 @@ def search_waypoint(problem: WaypointProblem, rng: np.random.Generator) -> Searc
     iterations = 0
     first_feasible: int | None = None
     while not optimiser.finished and (useful or not iterations):
-        before, points = optimiser.best_cost, optimiser.ask()
+        points = optimiser.ask()
         if not iterations and np.array_equal(points, seeds) and not np.isnan(ranks).any():
             optimiser.tell(ranks)
         else:
             optimiser.tell(problem.rank(points))
             evaluations += len(points)
         iterations += 1
-        feasible = optimiser.best_cost < INFEASIBLE
-        if feasible and first_feasible is None:
-            first_feasible = iterations
-        idle = before - optimiser.best_cost < settings.stop_change
-        if parameters.rule_seeds and (idle if feasible else iterations >= HOPELESS):
-            break
+        if first_feasible is None:
+            if optimiser.best_cost < INFEASIBLE:
+                first_feasible = iterations
+            elif parameters.rule_seeds and iterations >= HOPELESS:
+                break
     feasible = optimiser.best_cost < INFEASIBLE
     best = (float(optimiser.best[0]), float(optimiser.best[1]))
     return Search(

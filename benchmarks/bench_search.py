@@ -125,7 +125,7 @@ def timed_cost(problem: WaypointProblem, goal: float) -> Callable[[Floats], Floa
 
 
 def by_sidestep(problem: WaypointProblem, goal: float, seed: int) -> None:
-    """Our search: seeds, then the swarm, as `avoidance.search.search_waypoint` drives them."""
+    """Our search: seeds, then the swarm, by the stop rule of the settings."""
     settings = problem.parameters.swarm
     seeds, _, _ = rule_seeds(problem, settings.particles)
     swarm = Pso(seeds, search_box(problem), settings, np.random.default_rng(seed))

@@ -9,6 +9,7 @@ import pytest
 
 from avoidance import Contact, Ownship, Performance, RadarScan, Route, Threat, Waypoint
 from avoidance.agent import Agent
+from avoidance.geofence import FenceArea, Geofence
 from avoidance.holding import FIRST_WAIT, LONGEST_WAIT, NoWay, skipped
 from avoidance.parameters import DEFAULT, PAPER
 from avoidance.route_check import Blocked
@@ -144,3 +145,19 @@ def test_no_route_is_left_for_a_circle_that_enters_deeper(aside: float, held: bo
         if said[-1] == "hold":
             break
     assert ("hold" in said) == held
+
+
+NECK = ((9000.0, 4.0), (9001.0, 4.0), (9001.0, 3000.0), (15_000.0, 3000.0))
+
+
+@pytest.mark.parametrize(("end", "held"), [(NECK, False), ((), True)], ids=["neck", "shut"])
+def test_no_route_is_left_for_a_circle_that_crosses_the_fence(
+    end: tuple[tuple[float, float], ...], held: bool
+) -> None:
+    """In a corridor too narrow to circle in, which ends in a neck narrower than is to be kept, or is shut."""
+    half = ((8000.0, 60.0), (9000.0, 60.0), *end)
+    edge = (*half, *((north, -east) for north, east in reversed(half)))
+    route = Route(Waypoint(8900.0, 0.0, 200.0), (Waypoint(12_000.0, 0.0, 200.0),))
+    agent = Agent(ALONE, way=lambda problem, _: None, geofence=Geofence([FenceArea(True, edge)]))
+    own = Ownship(0.0, 8900.0, 0.0, 200.0, 15.0, 0.0, airspeed=15.0)
+    assert (agent.decide(own, route, RadarScan.of(0.0, [])).name == "hold") == held
