@@ -86,10 +86,11 @@ def search_waypoint(problem: WaypointProblem, rng: np.random.Generator) -> Searc
         seeds, ranks, evaluations = rule_seeds(problem, settings.particles)
         found = bool(ranks[0] < INFEASIBLE)
         useful = found or math.isinf(problem.longest)
-        if found or not useful:
-            ranks = np.where(np.isnan(ranks), OUT_OF_PLACE, ranks)
-        if found and not len(problem.intruders):
+        best_known = found and not len(problem.intruders)
+        if best_known:
             settings = replace(settings, stop_iterations=1)
+        if best_known or not useful:
+            ranks = np.where(np.isnan(ranks), OUT_OF_PLACE, ranks)
     else:
         seeds = sphere_seeds(problem, settings.particles, rng)
         ranks = np.full(len(seeds), np.nan)

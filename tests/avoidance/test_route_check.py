@@ -66,6 +66,14 @@ def test_spheres_are_cut_at_flight_altitude() -> None:
     assert circle.keep[0] == pytest.approx(800.0 + kept_margin(DEFAULT, PERFORMANCE))
 
 
+def test_the_cut_depends_on_both_altitudes_of_a_leg() -> None:
+    own, way = ownship(), route((40_000.0, 0.0))
+    around = known([(9000.0, 0.0)], own, way, altitude=1000.0)
+    cuts = [float(around.circles(200.0, high).hard[0]) for high in (200.0, 600.0, 1000.0, 200.0)]
+    assert cuts[0] < cuts[1] < cuts[2] == pytest.approx(1000.0)
+    assert cuts[3] == cuts[0]
+
+
 def test_circles_shrink_where_the_margin_cannot_be_kept_any_more() -> None:
     own, way = ownship(), route((40_000.0, 0.0))
     near = keep_what_can_be_kept(known([(0.0, 1010.0)], own, way), own, PERFORMANCE).circles(200.0, 200.0)

@@ -46,6 +46,14 @@ def test_a_swarm_that_does_not_improve_on_the_rules_stops_at_once() -> None:
     assert search_waypoint(problem(SINGLE, parameters=replace(DEFAULT, rule_seeds=False)), rng).iterations > 3
 
 
+def test_in_traffic_it_goes_on_for_the_rules_are_not_the_best_there() -> None:
+    moving = intruders((-6400.4, -1682.0, 39.1, 4.9), (8265.5, 4835.2, 5.1, -5.2))
+    question = problem([], target=(20_000.0, 0.0), intruders=moving)
+    search = search_waypoint(question, np.random.default_rng(25))
+    assert search.iterations > 3
+    assert search.cost < 2040.0  # the rules' best has 2050.9
+
+
 def test_the_shorter_side_is_taken() -> None:
     search = search_waypoint(problem([(9000.0, 400.0)]), np.random.default_rng(0))
     assert search.found is not None
