@@ -76,8 +76,8 @@ def search_waypoint(problem: WaypointProblem, rng: np.random.Generator) -> Searc
 
     Notes
     -----
-    Algorithm 10. Where nothing moves the rules find the best point but for centimetres: a planner that sets
-    out from it stops at the first iteration that brings nothing, not after `SwarmSettings.stop_iterations`.
+    Algorithm 10. Round what stands still the rules find the best point but for centimetres: a planner that
+    sets out from it stops at the first iteration that brings nothing, not after as many as the settings say.
     """
     parameters = problem.parameters
     settings = parameters.swarm
@@ -86,7 +86,7 @@ def search_waypoint(problem: WaypointProblem, rng: np.random.Generator) -> Searc
         seeds, ranks, evaluations = rule_seeds(problem, settings.particles)
         found = bool(ranks[0] < INFEASIBLE)
         useful = found or math.isinf(problem.longest)
-        best_known = found and not len(problem.intruders)
+        best_known = found and bool(len(problem.avoided)) and not len(problem.intruders)
         if best_known:
             settings = replace(settings, stop_iterations=1)
         if best_known or not useful:

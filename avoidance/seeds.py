@@ -104,20 +104,18 @@ def rule_seeds(problem: WaypointProblem, count: int) -> tuple[Floats, Floats, in
     Intersections of tangents with tangents, tangents with circles, circles with circles, and points along
     the circles. Candidates are taken in order of cost, so the first feasible one is the best of all; turns
     and risk move the best waypoint off these points a little, so it is then refined. Where no candidate is
-    feasible (the turn on to the first leg can ask for more room than the curves give) points in a fan are
-    tried.
+    feasible (the turn on to the first leg can ask for more room than the curves give), or only a fence is in
+    the way, points in a fan are tried.
     """
-    if not len(problem.avoided) and not len(problem.intruders):
-        seeds = _fan(problem)[:count]
-        return seeds, np.full(len(seeds), np.nan), 0
-    candidates = _candidates(problem)
+    fenced = not (len(problem.avoided) or len(problem.intruders))
+    candidates = _fan(problem) if fenced else _candidates(problem)
     if math.isfinite(problem.longest):
         candidates = candidates[path_length(candidates, problem.start, problem.target) < problem.longest]
     if not len(candidates):
         return np.array([problem.start]), np.array([np.nan]), 0
     seeds, ranks, tested = _best_first(problem, candidates, count)
-    rounds = ROUNDS
-    if ranks[0] >= INFEASIBLE and math.isinf(problem.longest):
+    rounds = ROUNDS_FROM_AFAR if fenced else ROUNDS
+    if ranks[0] >= INFEASIBLE and math.isinf(problem.longest) and not fenced:
         seeds, ranks, more = _best_first(problem, np.concatenate([seeds, _fan(problem)]), count)
         tested += more
         rounds = ROUNDS_FROM_AFAR
@@ -166,7 +164,7 @@ def _terminals(problem: WaypointProblem, members: Ints) -> tuple[int, int]:
 
 
 def _fan(problem: WaypointProblem) -> Floats:
-    """Points ahead of the start in a fan, for obstacles that move, shape (m, 2)."""
+    """Points ahead of the start in a fan, where there are no curves, shape (m, 2)."""
     bearing = math.atan2(problem.target[1] - problem.start[1], problem.target[0] - problem.start[0])
     distance = min(math.dist(problem.start, problem.target), 12_000.0)
     angle = bearing + np.radians(np.arange(-90.0, 90.1, 5.0))

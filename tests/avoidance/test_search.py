@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from avoidance.geofence import Walls
 from avoidance.parameters import DEFAULT, PAPER, Parameters
 from avoidance.problem import INFEASIBLE
 from avoidance.search import search_waypoint
@@ -103,6 +104,14 @@ def test_rule_seeds_begin_with_a_feasible_point() -> None:
     seeds, _, evaluated = rule_seeds(question, 20)
     assert question.rank(seeds[:1])[0] < INFEASIBLE
     assert evaluated > 0
+
+
+def test_a_wall_alone_is_flown_round() -> None:
+    wall = Walls(np.array([[[9000.0, -3000.0], [9000.0, 2000.0]]]), room=17.0)
+    fenced = replace(problem([], target=(20_000.0, 0.0)), relaxed=frozenset({"g2"}), walls=wall)
+    search = search_waypoint(fenced, np.random.default_rng(0))
+    assert search.found is not None
+    assert search.found[1] > 2000.0
 
 
 def test_length_to_optimum_compares_with_the_shortest_path() -> None:
