@@ -35,7 +35,7 @@ ROUNDS = 3
 ROUNDS_FROM_AFAR = 8
 """The same, where none of the curves led to a feasible point."""
 REACH = 2000.0
-"""Obstacles this much further than the search limit cannot bound the search [m]."""
+"""Obstacles this much further than the search limit bound a search only where a leg is long [m]."""
 
 
 def sphere_seeds(problem: WaypointProblem, count: int, rng: np.random.Generator) -> Floats:
@@ -116,7 +116,8 @@ def rule_seeds(problem: WaypointProblem, count: int) -> tuple[Floats, Floats, in
     seeds, ranks, tested = _best_first(problem, candidates, count)
     rounds = ROUNDS_FROM_AFAR if fenced else ROUNDS
     if ranks[0] >= INFEASIBLE and math.isinf(problem.longest) and not fenced:
-        seeds, ranks, more = _best_first(problem, np.concatenate([seeds, _fan(problem)]), count)
+        further = [seeds, _fan(problem), *_from_afar(problem)]
+        seeds, ranks, more = _best_first(problem, np.concatenate(further), count)
         tested += more
         rounds = ROUNDS_FROM_AFAR
     if ranks[0] < INFEASIBLE:
@@ -129,23 +130,37 @@ def rule_seeds(problem: WaypointProblem, count: int) -> tuple[Floats, Floats, in
 
 def _candidates(problem: WaypointProblem) -> Floats:
     """Points where curves that bound the feasible set meet, shape (m, 2)."""
-    near = _near(problem)
+    near = _nearest(problem, _about(problem)) if len(problem.avoided) else problem.avoided
     candidates = [traffic_seeds(problem)] if len(problem.intruders) else []
     if len(near):
         curves = Curves.of(problem, near)
-        found = np.concatenate([*curves.corners(), *curves.pierced(problem), *curves.crossings()])
-        candidates += [found.view(np.float64).reshape(-1, 2), curves.beside()]
+        candidates += [_meetings(problem, curves), curves.beside()]
     return np.concatenate(candidates)
 
 
-def _near(problem: WaypointProblem) -> Ints:
-    """Obstacles that can bound the search: about what is avoided, the nearest to the straight leg first."""
-    if not len(problem.avoided):
-        return problem.avoided
+def _from_afar(problem: WaypointProblem) -> Iterator[Floats]:
+    """The same, of obstacles also that lie far from what is avoided and touch a long leg."""
+    if not len(problem.avoided) or len(_about(problem)) == len(problem.centres):
+        return
+    everywhere = _nearest(problem, np.arange(len(problem.centres)))
+    yield _meetings(problem, Curves.of(problem, everywhere))
+
+
+def _meetings(problem: WaypointProblem, curves: Curves) -> Floats:
+    found = np.concatenate([*curves.corners(), *curves.pierced(problem), *curves.crossings()])
+    return found.view(np.float64).reshape(-1, 2)
+
+
+def _about(problem: WaypointProblem) -> Ints:
+    """Obstacles about what is avoided, which bound nearly all searches."""
     members = problem.centres[problem.avoided]
     low = members.min(axis=0) - problem.parameters.search_limit - REACH
     high = members.max(axis=0) + problem.parameters.search_limit + REACH
-    inside = np.flatnonzero(((problem.centres >= low) & (problem.centres <= high)).all(axis=1))
+    return np.flatnonzero(((problem.centres >= low) & (problem.centres <= high)).all(axis=1))
+
+
+def _nearest(problem: WaypointProblem, inside: Ints) -> Ints:
+    """As many of some obstacles as fit into a decision, the nearest to the straight leg first."""
     if len(inside) <= MOST_OBSTACLES:
         return inside
     gap = (

@@ -114,6 +114,15 @@ def test_a_wall_alone_is_flown_round() -> None:
     assert search.found[1] > 2000.0
 
 
+def test_what_touches_a_long_leg_far_from_the_hill_bounds_the_search_too() -> None:
+    hill = [(814.0, 1772.0), (798.0, 845.0), (469.0, 3248.0)]
+    others = [(11_453.0, 2166.0), (7402.0, 5319.0), (6032.0, -5965.0), (3832.0, -4405.0)]
+    between = [(2358.0, -977.0), (4236.0, -2741.0)]
+    question = replace(problem([*hill, *others, *between], target=(28_484.0, 0.0)), avoided=np.arange(3))
+    assert best_waypoint(question) is not None
+    assert search_waypoint(question, np.random.default_rng(0)).found is not None
+
+
 def test_length_to_optimum_compares_with_the_shortest_path() -> None:
     search = search_waypoint(problem(SINGLE), np.random.default_rng(0))
     ratio = length_to_optimum(search)
