@@ -116,7 +116,7 @@ def rule_seeds(problem: WaypointProblem, count: int) -> tuple[Floats, Floats, in
     seeds, ranks, tested = _best_first(problem, candidates, count)
     rounds = ROUNDS_FROM_AFAR if fenced else ROUNDS
     if ranks[0] >= INFEASIBLE and math.isinf(problem.longest) and not fenced:
-        further = [seeds, _fan(problem), *_from_afar(problem)]
+        further = [seeds, _fan(problem), _from_afar(problem)]
         seeds, ranks, more = _best_first(problem, np.concatenate(further), count)
         tested += more
         rounds = ROUNDS_FROM_AFAR
@@ -129,8 +129,8 @@ def rule_seeds(problem: WaypointProblem, count: int) -> tuple[Floats, Floats, in
 
 
 def _candidates(problem: WaypointProblem) -> Floats:
-    """Points where curves that bound the feasible set meet, shape (m, 2)."""
-    near = _nearest(problem, _about(problem)) if len(problem.avoided) else problem.avoided
+    """Points where curves that bound the feasible set meet, shape (m, 2) [m]."""
+    near = _near(problem)
     candidates = [traffic_seeds(problem)] if len(problem.intruders) else []
     if len(near):
         curves = Curves.of(problem, near)
@@ -138,29 +138,33 @@ def _candidates(problem: WaypointProblem) -> Floats:
     return np.concatenate(candidates)
 
 
-def _from_afar(problem: WaypointProblem) -> Iterator[Floats]:
-    """The same, of obstacles also that lie far from what is avoided and touch a long leg."""
-    if not len(problem.avoided) or len(_about(problem)) == len(problem.centres):
-        return
-    everywhere = _nearest(problem, np.arange(len(problem.centres)))
-    yield _meetings(problem, Curves.of(problem, everywhere))
+def _from_afar(problem: WaypointProblem) -> Floats:
+    """The same of obstacles also that lie far from what is avoided, where a long leg may touch them."""
+    near, everywhere = _near(problem), _nearest(problem, np.arange(len(problem.centres)))
+    if not len(near) or np.array_equal(near, everywhere):
+        return np.empty((0, 2))
+    return _meetings(problem, Curves.of(problem, everywhere))
 
 
 def _meetings(problem: WaypointProblem, curves: Curves) -> Floats:
+    """Where curves meet one another, shape (m, 2) [m]."""
     found = np.concatenate([*curves.corners(), *curves.pierced(problem), *curves.crossings()])
     return found.view(np.float64).reshape(-1, 2)
 
 
-def _about(problem: WaypointProblem) -> Ints:
-    """Obstacles about what is avoided, which bound nearly all searches."""
+def _near(problem: WaypointProblem) -> Ints:
+    """Obstacles about what is avoided: they bound nearly all searches."""
+    if not len(problem.avoided):
+        return problem.avoided
     members = problem.centres[problem.avoided]
     low = members.min(axis=0) - problem.parameters.search_limit - REACH
     high = members.max(axis=0) + problem.parameters.search_limit + REACH
-    return np.flatnonzero(((problem.centres >= low) & (problem.centres <= high)).all(axis=1))
+    inside = ((problem.centres >= low) & (problem.centres <= high)).all(axis=1)
+    return _nearest(problem, np.flatnonzero(inside))
 
 
 def _nearest(problem: WaypointProblem, inside: Ints) -> Ints:
-    """As many of some obstacles as fit into a decision, the nearest to the straight leg first."""
+    """As many of some obstacles as fit into a decision, those nearest to the straight leg, ascending."""
     if len(inside) <= MOST_OBSTACLES:
         return inside
     gap = (
