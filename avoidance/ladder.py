@@ -72,7 +72,7 @@ def way_round(problem: WaypointProblem, rng: np.random.Generator) -> Plan | None
     """
     search = None
     for rung, relaxed in RUNGS if len(problem.centres) else RUNGS[:2]:
-        search = search_waypoint(replace(problem, relaxed=relaxed), rng)
+        search = search_waypoint(problem.relaxing(relaxed), rng)
         if search.found is not None:
             return _cheapest(problem, Plan(rung, (search.found,), search), rng)
         if rung is RUNGS[0][0] and not _any_way(problem):
@@ -97,7 +97,7 @@ def _cheapest(problem: WaypointProblem, plan: Plan, rng: np.random.Generator) ->
             return Plan(Rung.ROUTE, route, plan.search, length - length_by(problem, route))
     first, least = length, _at_least(problem)
     if plan.rung is not Rung.CLOSE and length - least >= relaxing:
-        close = replace(problem, relaxed=RUNGS[-1][1], longest=length - relaxing)
+        close = problem.relaxing(RUNGS[-1][1], longest=length - relaxing)
         search = search_waypoint(close, rng)
         if search.found is not None and length_by(problem, (search.found,)) < close.longest:
             length = length_by(problem, (search.found,))
@@ -158,7 +158,7 @@ def widest_way(problem: WaypointProblem, rng: np.random.Generator, lacking: floa
     plan = way_round(replace(problem, intruders=sure), rng)
     if plan is not None:
         return plan
-    search = search_waypoint(replace(problem, relaxed=RUNGS[-1][1]), rng)
+    search = search_waypoint(problem.relaxing(RUNGS[-1][1]), rng)
     single: Corners = (search.least_violating,)
     found = [(problem.separation_shortfall(single), single)]
     route, short = _through_traffic(problem, rng)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -69,6 +69,19 @@ class WaypointProblem:
     """Steady wind, towards north and east [m/s]."""
     longest: float = math.inf
     """Ways that are no shorter than this are of no use: where seeds find none, the search ends [m]."""
+    rays: list[tuple[Complexes, Complexes]] = field(default_factory=list, init=False, repr=False)
+    """Tangents from the start and from the target, once worked out: they outlast giving up constraints."""
+
+    def relaxing(self, given_up: frozenset[str], longest: float = math.inf) -> WaypointProblem:
+        """The same search with some constraints given up, for ways shorter than `longest` [m]."""
+        relaxed = replace(self, relaxed=given_up, longest=longest)
+        object.__setattr__(relaxed, "rays", self.rays)  # shared: what either works out serves the other
+        return relaxed
+
+    @property
+    def alone(self) -> bool:
+        """True if nothing moves."""
+        return not len(self.intruders)
 
     def cost(self, points: Floats) -> Floats:
         """f of Eq. (6) for candidates of shape (n, 2): W_t f1 + W_o f2, shape (n,)."""
@@ -117,7 +130,7 @@ class WaypointProblem:
             as_complex(points),
             complex(*self.target),
         )
-        return self._line_shortfall(onward[:, :-1], onward[:, 1:], np.zeros((len(points), 2)))
+        return self.line_shortfall(onward[:, :-1], onward[:, 1:], np.zeros((len(points), 2)))
 
     def violation(self, points: Floats) -> Floats:
         """Sum of the violations of candidates of shape (n, 2) [m], shape (n,); 0 where feasible."""
@@ -166,12 +179,12 @@ class WaypointProblem:
         starts, ends, extra = starts[:, skip:], ends[:, skip:], extra[:, skip:]
         shortfall = np.zeros(len(onward))
         if len(self.centres) and len(onward):
-            shortfall = self._line_shortfall(starts, ends, extra)
+            shortfall = self.line_shortfall(starts, ends, extra)
         if len(self.walls):
             shortfall = np.maximum(shortfall, self.walls.shortfall(as_pairs(starts), as_pairs(ends), extra))
         return shortfall
 
-    def _line_shortfall(self, starts: Complexes, ends: Complexes, extra: Floats) -> Floats:
+    def line_shortfall(self, starts: Complexes, ends: Complexes, extra: Floats) -> Floats:
         """Largest shortfall of lines, ends of shape (n, m), to what is kept from spheres, shape (n,) [m]."""
         if len(self.centres) > FEW:
             pairs = as_pairs(starts), as_pairs(ends)

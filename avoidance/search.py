@@ -77,19 +77,20 @@ def search_waypoint(problem: WaypointProblem, rng: np.random.Generator) -> Searc
     Notes
     -----
     Algorithm 10. Round what stands still the rules find the best point but for centimetres: a planner that
-    sets out from it stops at the first iteration that brings nothing, not after as many as the settings say.
+    sets out from it stops at the first iteration that brings nothing, not after as many as the settings say;
+    and at once where nothing can be better (`avoidance.seeds.rule_seeds`).
     """
     parameters = problem.parameters
     settings = parameters.swarm
-    evaluations, useful = 0, True
+    evaluations, searching = 0, True
     if parameters.rule_seeds:
-        seeds, ranks, evaluations = rule_seeds(problem, settings.particles)
-        found = bool(ranks[0] < INFEASIBLE)
-        useful = found or math.isinf(problem.longest)
-        best_known = found and bool(len(problem.avoided)) and not len(problem.intruders)
+        found = rule_seeds(problem, settings.particles)
+        seeds, ranks, evaluations = found.points, found.ranks, found.tested
+        searching = not found.proven and (found.feasible or math.isinf(problem.longest))
+        best_known = found.feasible and bool(len(problem.avoided)) and problem.alone
         if best_known:
             settings = replace(settings, stop_iterations=1)
-        if best_known or not useful:
+        if best_known or not searching:
             ranks = np.where(np.isnan(ranks), OUT_OF_PLACE, ranks)
     else:
         seeds = sphere_seeds(problem, settings.particles, rng)
@@ -97,7 +98,7 @@ def search_waypoint(problem: WaypointProblem, rng: np.random.Generator) -> Searc
     optimiser = OPTIMISERS[parameters.optimiser](seeds, search_box(problem), settings, rng)
     iterations = 0
     first_feasible: int | None = None
-    while not optimiser.finished and (useful or not iterations):
+    while not optimiser.finished and (searching or not iterations):
         points = optimiser.ask()
         if not iterations and np.array_equal(points, seeds) and not np.isnan(ranks).any():
             optimiser.tell(ranks)

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from avoidance.flown import as_complex
-from avoidance.geometry import segments_clearance
 from avoidance.problem import WaypointProblem
 from avoidance.types import Bools, Complexes, Floats, Ints
 
@@ -25,6 +24,8 @@ CIRCLE_POINTS = 12
 """Points on each circle that the waypoint must keep clear of."""
 RING = np.exp(2.0j * np.pi / CIRCLE_POINTS * np.arange(CIRCLE_POINTS))
 """Their directions from its centre."""
+MOST_CIRCLES = 40
+"""Circles whose intersections with one another fit into a decision."""
 PARALLEL = 1e-12
 """Sine of the angle at which two rays count as parallel."""
 
@@ -38,9 +39,11 @@ class Curves:
     target: complex
     """Where they end [m]."""
     centres: Complexes
-    """Of the circles, shape (d,) [m]."""
-    rims: Floats
-    """What the waypoint keeps from them, shape (d,) [m]."""
+    """Of circles, shape (c,) [m]: first those to keep out of, then those to keep within (g2)."""
+    radii: Floats
+    """Their radii, shape (c,) [m]."""
+    rims: int
+    """How many are to be kept out of."""
     from_start: Complexes
     """Directions of tangents from the start that reach their circle, by pad, shape (p, a)."""
     from_target: Complexes
@@ -50,15 +53,17 @@ class Curves:
     def of(cls, problem: WaypointProblem, near: Ints) -> Curves:
         """Those of the obstacles with the indices `near`, shape (d,)."""
         centres, keep = as_complex(problem.centres[near]), problem.keep[near]
-        rims = (keep if "g1" in problem.relaxed else problem.keep_waypoint[near]) + OUTSIDE
-        points = np.array([complex(*problem.start), complex(*problem.target)])
-        offset = centres - points[:, None]
-        directions = _tangents(offset, keep + CORNER_PADS[:, None, None])
-        reaching = _reaching(problem, points, offset, keep + OUTSIDE, directions[0])
-        rays = [directions[:, k, reaching[k]] for k in range(len(points))]
-        return cls(complex(points[0]), complex(points[1]), centres, rims, *rays)
+        if not problem.rays:
+            problem.rays.append(_rays(problem, centres, keep))
+        radii = (keep if "g1" in problem.relaxed else problem.keep_waypoint[near]) + OUTSIDE
+        if "g2" not in problem.relaxed:
+            limit = problem.parameters.search_limit - OUTSIDE
+            centres = np.concatenate([centres, as_complex(problem.centres[problem.avoided])])
+            radii = np.concatenate([radii, np.full(len(problem.avoided), limit)])
+        ends = complex(*problem.start), complex(*problem.target)
+        return cls(*ends, centres, radii, len(near), *problem.rays[0])
 
-    def corners(self) -> tuple[Complexes, ...]:
+    def corners(self) -> Complexes:
         """Where rays from the start meet rays from the target."""
         first, second = self.from_start[:, :, None], self.from_target[:, None]
         between = self.target - self.start
@@ -67,23 +72,25 @@ class Curves:
             along_first = (np.conj(between) * second).imag / sine
             along_second = (np.conj(between) * first).imag / sine
         good = (along_first > 0.0) & (along_second > 0.0) & (np.abs(sine) >= PARALLEL)
-        return ((self.start + along_first * first)[good],)
+        return np.asarray((self.start + along_first * first)[good])
 
-    def pierced(self, problem: WaypointProblem) -> tuple[Complexes, ...]:
-        """Where rays meet circles that the waypoint must keep out of, and leave the search space (g2)."""
-        centres, radii = self.centres, self.rims
-        if "g2" not in problem.relaxed:
-            members = as_complex(problem.centres[problem.avoided])
-            limit = np.full(len(members), problem.parameters.search_limit - OUTSIDE)
-            centres, radii = np.concatenate([centres, members]), np.concatenate([radii, limit])
-        return (
-            *_pierce(self.start, self.from_start[0], centres, radii),
-            *_pierce(self.target, self.from_target[0], centres, radii),
-        )
+    def pierced(self) -> tuple[Complexes, Complexes]:
+        """Where rays enter circles, and where they leave them."""
+        rays = np.concatenate([self.from_start[0], self.from_target[0]])[:, None]
+        origins = np.full(rays.shape, self.target)
+        origins[: self.from_start.shape[1]] = self.start
+        seen = np.conj(rays) * (self.centres - origins)
+        square = self.radii * self.radii - seen.imag**2
+        half = np.sqrt(np.maximum(square, 0.0))
+        near, far = seen.real - half, seen.real + half
+        ahead = (square >= 0.0) & (far > 0.0)
+        entered = ahead & (near > 0.0)
+        return (origins + near * rays)[entered], (origins + far * rays)[ahead]
 
-    def crossings(self) -> tuple[Complexes, ...]:
-        """Intersections of all pairs of circles that the waypoint must keep out of."""
-        centres, radii = self.centres, self.rims
+    def crossings(self) -> tuple[Complexes, Complexes]:
+        """Intersections of all pairs of circles; of many, of those alone that are to be kept out of."""
+        count = len(self.centres) if len(self.centres) <= MOST_CIRCLES else self.rims
+        centres, radii = self.centres[:count], self.radii[:count]
         offset = centres - centres[:, None]
         distance = np.abs(offset)
         first, second = np.nonzero(distance < radii + radii[:, None])
@@ -102,8 +109,17 @@ class Curves:
         between = self.target - self.start
         across = 1.0j * between / max(abs(between), 1e-9)
         directions = np.append(RING, [across, -across])
-        found = self.centres[:, None] + self.rims[:, None] * directions
+        found = self.centres[: self.rims, None] + self.radii[: self.rims, None] * directions
         return np.asarray(found.view(np.float64).reshape(-1, 2))
+
+
+def _rays(problem: WaypointProblem, centres: Complexes, keep: Floats) -> tuple[Complexes, Complexes]:
+    """Directions of tangents from the start and from the target that reach their circle, by pad."""
+    points = np.array([complex(*problem.start), complex(*problem.target)])
+    offset = centres - points[:, None]
+    directions = _tangents(offset, keep + CORNER_PADS[:, None, None])
+    reaching = _reaching(problem, points, offset, keep + OUTSIDE, directions[0])
+    return directions[:, 0, reaching[0]], directions[:, 1, reaching[1]]
 
 
 def _tangents(offset: Complexes, radii: Floats) -> Complexes:
@@ -125,21 +141,7 @@ def _reaching(
     """Which of the tangents from k points nothing blocks before they touch their circle, shape (k, 2d)."""
     square = np.tile(np.abs(offset) ** 2 - radii * radii, 2)
     touch = points[:, None] + np.sqrt(np.maximum(square, 0.0)) * directions
-    begin = np.repeat(points, touch.shape[1])
-    pairs = (begin.view(np.float64).reshape(-1, 2), touch.view(np.float64).reshape(-1, 2))
-    gap = segments_clearance(*pairs, problem.centres)
-    return np.asarray((gap >= problem.keep - OUTSIDE).all(axis=1).reshape(square.shape) & (square > 0.0))
-
-
-def _pierce(
-    point: complex, directions: Complexes, centres: Complexes, radii: Floats
-) -> tuple[Complexes, Complexes]:
-    """Where rays from a point enter circles, and where they leave them."""
-    seen = np.conj(directions)[:, None] * (centres - point)
-    square = radii * radii - seen.imag**2
-    half = np.sqrt(np.maximum(square, 0.0))
-    near, far = seen.real - half, seen.real + half
-    ahead = (square >= 0.0) & (far > 0.0)
-    unit = np.broadcast_to(directions[:, None], seen.shape)
-    entered = ahead & (near > 0.0)
-    return point + near[entered] * unit[entered], point + far[ahead] * unit[ahead]
+    begin = np.broadcast_to(points[:, None], touch.shape)
+    less = np.full((touch.size, 1), -OUTSIDE)
+    short = problem.line_shortfall(begin.reshape(-1, 1), touch.reshape(-1, 1), less)
+    return np.asarray((short <= 0.0).reshape(touch.shape) & (square > 0.0))

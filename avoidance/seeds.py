@@ -9,33 +9,60 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from avoidance.cost import path_length
+from avoidance.flown import as_pairs
 from avoidance.geometry import segment_point_distance
-from avoidance.problem import INFEASIBLE, WaypointProblem
+from avoidance.problem import INFEASIBLE, WaypointProblem, straight_cost
 from avoidance.refine import refined
-from avoidance.seed_curves import OUTSIDE, Curves
+from avoidance.seed_curves import MOST_CIRCLES, OUTSIDE, Curves
 from avoidance.traffic_seeds import traffic_seeds
 from avoidance.types import Floats, Ints
 
 BATCH = 256
-"""Candidates whose own place is tested at once."""
+"""Candidates whose own place is tested at once ..."""
+BATCH_ALONE = 128
+"""... at first, where nothing moves: the best of them nearly always passes."""
 CHUNK = 48
-"""Candidates whose flown curve is tested first."""
+"""Candidates whose flown curve is tested first ..."""
+CHUNK_ALONE = 4
+"""... where nothing moves."""
 NO_WAYPOINT = 1e6
 """Violation of a candidate whose own place breaks a constraint, beside how much it breaks it [m]."""
 NO_LEG = 0.5 * NO_WAYPOINT
 """The same of one that the straight legs to and from it rule out [m]."""
-MOST_OBSTACLES = 40
-"""Obstacles whose curves are intersected; more would not fit a decision's budget."""
-ROUNDS = 3
-"""Steps that the best seed is moved by."""
-ROUNDS_FROM_AFAR = 8
-"""The same, where none of the curves led to a feasible point."""
+ROUNDS = 8
+"""Most steps that the best seed is moved by ..."""
+ROUNDS_IN_TRAFFIC = 3
+"""... and where something moves, for the swarm searches on from there."""
 REACH = 2000.0
 """Obstacles this much further than the search limit bound a search only where a leg is long [m]."""
+RISKY = 0.1
+"""Risk may make another point the best where it is more than this part of what a detour costs ..."""
+AT_STAKE = 10.0
+"""... or weighs as much as so much of way [m]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Seeds:
+    """Points to search from, best first."""
+
+    points: Floats
+    """North and east, shape (m, 2) [m]."""
+    ranks: Floats
+    """What `WaypointProblem.rank` says of them, shape (m,); NaN where that has not been asked."""
+    tested: int
+    """Candidates whose flown curve was looked at."""
+    proven: bool = False
+    """True if the first one is the best there is, but for the little that less risk could save."""
+
+    @property
+    def feasible(self) -> bool:
+        """True if the first one meets every constraint."""
+        return bool(self.ranks[0] < INFEASIBLE)
 
 
 def sphere_seeds(problem: WaypointProblem, count: int, rng: np.random.Generator) -> Floats:
@@ -80,7 +107,7 @@ def sphere_seeds(problem: WaypointProblem, count: int, rng: np.random.Generator)
     return seeds
 
 
-def rule_seeds(problem: WaypointProblem, count: int) -> tuple[Floats, Floats, int]:
+def rule_seeds(problem: WaypointProblem, count: int) -> Seeds:
     """The best points on the curves that bound the feasible set.
 
     Parameters
@@ -92,18 +119,16 @@ def rule_seeds(problem: WaypointProblem, count: int) -> tuple[Floats, Floats, in
 
     Returns
     -------
-    seeds : array, shape (m, 2)
-        Best first, m <= count [m].
-    ranks : array, shape (m,)
-        What `WaypointProblem.rank` says of them; NaN where that has not been asked.
-    evaluated : int
-        Candidates whose feasibility was tested.
+    Seeds
+        Best first, at least one.
 
     Notes
     -----
     Intersections of tangents with tangents, tangents with circles, circles with circles, and points along
-    the circles. Candidates are taken in order of cost, so the first feasible one is the best of all; turns
-    and risk move the best waypoint off these points a little, so it is then refined. Where no candidate is
+    the circles. Candidates are taken in order of cost, so the first feasible one is the best of them. No way
+    is cheaper than the cheapest of those that the straight legs allow: if that one can be flown, and no
+    obstacle's curves were left out, it is the best there is. Else turns have moved the best waypoint off
+    these points, or risk may have, or curves left out would lead to it: it is refined. Where no candidate is
     feasible (the turn on to the first leg can ask for more room than the curves give), or only a fence is in
     the way, points in a fan are tried.
     """
@@ -112,65 +137,41 @@ def rule_seeds(problem: WaypointProblem, count: int) -> tuple[Floats, Floats, in
     if math.isfinite(problem.longest):
         candidates = candidates[path_length(candidates, problem.start, problem.target) < problem.longest]
     if not len(candidates):
-        return np.array([problem.start]), np.array([np.nan]), 0
-    seeds, ranks, tested = _best_first(problem, candidates, count)
-    rounds = ROUNDS_FROM_AFAR if fenced else ROUNDS
-    if ranks[0] >= INFEASIBLE and math.isinf(problem.longest) and not fenced:
-        further = [seeds, _fan(problem), _from_afar(problem)]
-        seeds, ranks, more = _best_first(problem, np.concatenate(further), count)
-        tested += more
-        rounds = ROUNDS_FROM_AFAR
-    if ranks[0] < INFEASIBLE:
-        best, rank, more = refined(problem, seeds[0], float(ranks[0]), rounds)
-        seeds = np.concatenate([best[None], seeds])[:count]
-        ranks = np.concatenate([[rank], ranks])[:count]
-        tested += more
-    return seeds, np.where(ranks < INFEASIBLE + NO_LEG, ranks, np.nan), tested
+        return Seeds(np.array([problem.start]), np.array([np.nan]), 0)
+    complete = not fenced and len(problem.centres) + len(problem.avoided) <= MOST_CIRCLES
+    found = _best_first(problem, candidates, count, complete)
+    rounds = ROUNDS if problem.alone else ROUNDS_IN_TRAFFIC
+    if not found.feasible and math.isinf(problem.longest) and not fenced:
+        again = _best_first(problem, np.concatenate([found.points, _fan(problem)]), count, complete=False)
+        found = replace(again, tested=found.tested + again.tested)
+        rounds = ROUNDS
+    if not found.feasible or found.proven:
+        return found
+    best, rank, more = refined(problem, found.points[0], float(found.ranks[0]), rounds)
+    points = np.concatenate([best[None], found.points])[:count]
+    return Seeds(points, np.concatenate([[rank], found.ranks])[:count], found.tested + more)
 
 
 def _candidates(problem: WaypointProblem) -> Floats:
     """Points where curves that bound the feasible set meet, shape (m, 2) [m]."""
-    near = _near(problem)
-    candidates = [traffic_seeds(problem)] if len(problem.intruders) else []
-    if len(near):
-        curves = Curves.of(problem, near)
-        candidates += [_meetings(problem, curves), curves.beside()]
+    candidates = [] if problem.alone else [traffic_seeds(problem)]
+    if len(problem.avoided):
+        curves = Curves.of(problem, _near(problem))
+        found = np.concatenate([curves.corners(), *curves.pierced(), *curves.crossings()])
+        candidates += [as_pairs(found), curves.beside()]
     return np.concatenate(candidates)
 
 
-def _from_afar(problem: WaypointProblem) -> Floats:
-    """The same of obstacles also that lie far from what is avoided, where a long leg may touch them."""
-    near, everywhere = _near(problem), _nearest(problem, np.arange(len(problem.centres)))
-    if not len(near) or np.array_equal(near, everywhere):
-        return np.empty((0, 2))
-    return _meetings(problem, Curves.of(problem, everywhere))
-
-
-def _meetings(problem: WaypointProblem, curves: Curves) -> Floats:
-    """Where curves meet one another, shape (m, 2) [m]."""
-    found = np.concatenate([*curves.corners(), *curves.pierced(problem), *curves.crossings()])
-    return found.view(np.float64).reshape(-1, 2)
-
-
 def _near(problem: WaypointProblem) -> Ints:
-    """Obstacles about what is avoided: they bound nearly all searches."""
-    if not len(problem.avoided):
-        return problem.avoided
+    """As many obstacles as fit into a decision: about what is avoided, then those nearest to the leg."""
+    if len(problem.centres) <= MOST_CIRCLES:
+        return np.arange(len(problem.centres))
     members = problem.centres[problem.avoided]
     low = members.min(axis=0) - problem.parameters.search_limit - REACH
     high = members.max(axis=0) + problem.parameters.search_limit + REACH
-    inside = ((problem.centres >= low) & (problem.centres <= high)).all(axis=1)
-    return _nearest(problem, np.flatnonzero(inside))
-
-
-def _nearest(problem: WaypointProblem, inside: Ints) -> Ints:
-    """As many of some obstacles as fit into a decision, those nearest to the straight leg, ascending."""
-    if len(inside) <= MOST_OBSTACLES:
-        return inside
-    gap = (
-        segment_point_distance(problem.start, problem.target, problem.centres[inside]) - problem.keep[inside]
-    )
-    return np.sort(inside[np.argsort(gap, kind="stable")[:MOST_OBSTACLES]])
+    about = ((problem.centres >= low) & (problem.centres <= high)).all(axis=1)
+    gap = segment_point_distance(problem.start, problem.target, problem.centres) - problem.keep
+    return np.sort(np.lexsort((gap, ~about))[:MOST_CIRCLES])
 
 
 def _terminals(problem: WaypointProblem, members: Ints) -> tuple[int, int]:
@@ -192,49 +193,75 @@ def _fan(problem: WaypointProblem) -> Floats:
     return np.asarray(np.array(problem.start) + grid).reshape(-1, 2)
 
 
-def _best_first(problem: WaypointProblem, candidates: Floats, count: int) -> tuple[Floats, Floats, int]:
-    """The best feasible candidates first, then the least violating ones; their ranks; how many were tested.
+def _best_first(problem: WaypointProblem, candidates: Floats, count: int, complete: bool) -> Seeds:
+    """The best feasible candidates first, then those not looked at, then the least violating ones.
 
     They are taken in order of length, the constraints on the waypoint itself (g1, g2) first, for they are
     cheap and sort out most; then the straight legs; then the flown curve. No longer one can be better once
-    the best costs less than its length alone.
+    the best costs less than its length alone. In traffic the swarm searches on from what is found here, so
+    many are looked at; else the cheapest that their straight legs allow nearly always passes, which proves it
+    the best if the candidates are `complete`: all points where curves meet that bound the feasible set.
     """
     length = path_length(candidates, problem.start, problem.target)
     order = np.argsort(length, kind="stable")
-    chosen: list[Floats] = []
-    ranks: list[Floats] = []
-    best, tested = math.inf, 0
-    for begin in range(0, len(order), BATCH):
-        if best < INFEASIBLE and best <= problem.parameters.path_weight * length[order[begin]]:
-            break
-        batch = candidates[order[begin : begin + BATCH]]
+    least_cost = problem.parameters.path_weight * length[order]
+    alone = problem.alone
+    size, chunk = (BATCH_ALONE, CHUNK_ALONE) if alone else (BATCH, CHUNK)
+    chosen, keys, ranks = list[Floats](), list[Floats](), list[Floats]()
+
+    def take(points: Floats, key: Floats, rank: Floats | None = None) -> None:
+        chosen.append(points)
+        keys.append(key)
+        ranks.append(np.full(len(points), np.nan) if rank is None else rank)
+
+    best = shortest = cheapest = math.inf
+    begin, tested = 0, 0
+    while begin < len(order):
+        end = begin + size
+        if best < INFEASIBLE:
+            if best <= least_cost[begin]:
+                break
+            end = min(end, int(np.searchsorted(least_cost, best))) if alone else end
+        batch = candidates[order[begin:end]]
         short = problem.waypoint_violation(batch)
         good = short <= 0.0
-        chosen.append(batch[~good])
-        ranks.append(INFEASIBLE + NO_WAYPOINT + short[~good])
+        take(batch[~good], INFEASIBLE + NO_WAYPOINT + short[~good])
         batch = batch[good]
         short = problem.leg_violation(batch)
         good = short <= 0.0
-        chosen.append(batch[~good])
-        ranks.append(INFEASIBLE + NO_LEG + short[~good])
-        for points, cost in _chunks(problem, batch[good]):
-            chosen.append(points)
-            ranks.append(problem.rank_placed(points, cost))
-            tested += len(points)
-            best = min(best, float(ranks[-1].min()))
-            if best < INFEASIBLE:
+        take(batch[~good], INFEASIBLE + NO_LEG + short[~good])
+        if math.isinf(shortest) and good.any():
+            shortest = float(path_length(batch[good][:1], problem.start, problem.target)[0])
+        batch, cost = _by_cost(problem, batch[good])
+        cheapest = min(cheapest, float(cost[:1].min(initial=math.inf)))
+        for first, last in _chunks(len(batch), chunk):
+            rank = problem.rank_placed(batch[first:last], cost[first:last])
+            take(batch[first:last], rank, rank)
+            tested += len(rank)
+            best = min(best, float(rank.min()))
+            if best < INFEASIBLE and not (alone and (cost[last:] < best).any()):
+                if alone:
+                    take(batch[last:], cost[last:])
                 break
-    points, rank = np.concatenate(chosen), np.concatenate(ranks)
-    first = np.argsort(rank, kind="stable")[:count]
-    return points[first], rank[first], tested
+        begin, size = begin + size, 2 * size if alone else size
+    points, key, rank = np.concatenate(chosen), np.concatenate(keys), np.concatenate(ranks)
+    first_ones = np.argsort(key, kind="stable")[:count]
+    weight = problem.parameters.path_weight
+    at_stake = min(RISKY * (best - straight_cost(problem)), AT_STAKE * weight)
+    proven = complete and alone and best == cheapest and best - weight * shortest <= at_stake
+    return Seeds(points[first_ones], rank[first_ones], tested, proven)
 
 
-def _chunks(problem: WaypointProblem, points: Floats) -> Iterator[tuple[Floats, Floats]]:
-    """Points in order of cost, and their cost; a few at first, then ever more at a time."""
+def _by_cost(problem: WaypointProblem, points: Floats) -> tuple[Floats, Floats]:
+    """Points in order of cost, and their cost."""
     cost = problem.cost(points)
     order = np.argsort(cost, kind="stable")
-    points, cost = points[order], cost[order]
-    begin, size = 0, CHUNK
-    while begin < len(points):
-        yield points[begin : begin + size], cost[begin : begin + size]
+    return points[order], cost[order]
+
+
+def _chunks(count: int, size: int) -> Iterator[tuple[int, int]]:
+    """Parts of a row of things: a few at first, then ever more at a time."""
+    begin = 0
+    while begin < count:
+        yield begin, begin + size
         begin, size = begin + size, 2 * size

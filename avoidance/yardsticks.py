@@ -40,7 +40,7 @@ def best_waypoint(problem: WaypointProblem) -> tuple[Floats, float] | None:
     centre, half = 0.5 * (low + high), 0.5 * (high - low)
     axis = np.linspace(-1.0, 1.0, COARSE)
     grid = np.stack(np.meshgrid(axis, axis, indexing="ij"), axis=-1).reshape(-1, 2)
-    points = np.concatenate([centre + half * grid, rule_seeds(problem, 40)[0]])
+    points = np.concatenate([centre + half * grid, rule_seeds(problem, 40).points])
     ranks = _rank(problem, points)
     cell = 2.0 * half / (COARSE - 1)
     offsets = np.linspace(-1.0, 1.0, FINE)

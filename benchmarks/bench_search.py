@@ -127,7 +127,7 @@ def timed_cost(problem: WaypointProblem, goal: float) -> Callable[[Floats], Floa
 def by_sidestep(problem: WaypointProblem, goal: float, seed: int) -> None:
     """Our search: seeds, then the swarm, by the stop rule of the settings."""
     settings = problem.parameters.swarm
-    seeds, _, _ = rule_seeds(problem, settings.particles)
+    seeds = rule_seeds(problem, settings.particles).points
     swarm = Pso(seeds, search_box(problem), settings, np.random.default_rng(seed))
     rank = timed_cost(problem, goal)
     while not swarm.finished:

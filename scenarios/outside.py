@@ -141,7 +141,7 @@ def _population(problem: WaypointProblem, rng: np.random.Generator) -> Floats:
     """The swarm's seeds, filled up as the swarm fills them."""
     count = problem.parameters.swarm.particles
     if problem.parameters.rule_seeds:
-        seeds = rule_seeds(problem, count)[0]
+        seeds = rule_seeds(problem, count).points
     else:
         seeds = sphere_seeds(problem, count, rng)
     missing = max(count - len(seeds), 0)

@@ -87,7 +87,9 @@ def iterations(question: WaypointProblem, rng: np.random.Generator) -> Iterator[
     """Run the planner that the problem's parameters name, one iteration after the other."""
     parameters = question.parameters
     count = parameters.swarm.particles
-    seeds = rule_seeds(question, count)[0] if parameters.rule_seeds else sphere_seeds(question, count, rng)
+    seeds = (
+        rule_seeds(question, count).points if parameters.rule_seeds else sphere_seeds(question, count, rng)
+    )
     planner = OPTIMISERS[parameters.optimiser](seeds, search_box(question), parameters.swarm, rng)
     while not planner.finished:
         points = planner.ask().copy()

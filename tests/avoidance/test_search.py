@@ -8,11 +8,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from avoidance import seeds
+from avoidance.cost import path_length
 from avoidance.geofence import Walls
 from avoidance.parameters import DEFAULT, PAPER, Parameters
-from avoidance.problem import INFEASIBLE
+from avoidance.problem import INFEASIBLE, WaypointProblem
 from avoidance.search import search_waypoint
 from avoidance.seeds import rule_seeds, sphere_seeds
+from avoidance.types import Floats
 from avoidance.yardsticks import best_waypoint, length_to_optimum, search_gap
 from tests.avoidance.worlds import intruders, problem
 
@@ -40,11 +43,76 @@ def test_the_default_planner_is_within_a_thousandth_of_the_best(seed: int) -> No
     assert 0.0 <= gap <= 0.001
 
 
-def test_a_swarm_that_does_not_improve_on_the_rules_stops_at_once() -> None:
-    """The seeds and one iteration; from seeds about the sphere it goes on for as long as it improves."""
+def test_a_swarm_that_is_given_the_best_only_looks_at_its_seeds() -> None:
+    """From seeds about the sphere it goes on for as long as it improves."""
     rng = np.random.default_rng(0)
-    assert search_waypoint(problem(SINGLE), rng).iterations == 2
+    assert rule_seeds(problem(SINGLE), 20).proven
+    assert search_waypoint(problem(SINGLE), rng).iterations == 1
     assert search_waypoint(problem(SINGLE, parameters=replace(DEFAULT, rule_seeds=False)), rng).iterations > 3
+
+
+def test_the_best_is_proven_only_where_the_curves_of_all_obstacles_are_known() -> None:
+    beside = [(3000.0 + 400.0 * k, 9000.0) for k in range(45)]
+    for count in (10, 45):
+        question = replace(problem([*SINGLE, *beside[:count]]), avoided=np.arange(1))
+        assert rule_seeds(question, 20).proven is (count == 10)
+
+
+def test_the_best_is_not_proven_where_risk_is_a_large_part_of_what_the_detour_costs() -> None:
+    """A leg that hardly cuts the sphere: ever less way is added, the risk near it stays."""
+    deep, grazing = ([(9000.0, 400.0)], [(9000.0, 1005.0)])
+    assert rule_seeds(problem(deep, target=(20_000.0, 0.0)), 20).proven
+    assert not rule_seeds(problem(grazing, target=(20_000.0, 0.0)), 20).proven
+
+
+def test_a_dear_point_that_can_be_flown_does_not_hide_a_cheaper_one_behind_some_that_cannot(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The shortest way is dear, the next ten cannot be flown."""
+    question = problem(SINGLE, target=(20_000.0, 0.0))
+    known = np.sort(rule_seeds(question, 300).points.view(np.complex128)[:, 0])
+    points = known.view(np.float64).reshape(-1, 2)
+    allowed = points[(question.waypoint_violation(points) <= 0.0) & (question.leg_violation(points) <= 0.0)]
+    lengths = np.sort(path_length(allowed, question.start, question.target))
+
+    def cost(_: WaypointProblem, points: Floats) -> Floats:
+        length = path_length(points, question.start, question.target)
+        return np.asarray(0.1 * length + 1000.0 * (length < lengths[0] + 1e-6))
+
+    def rank(_: WaypointProblem, points: Floats, cost: Floats) -> Floats:
+        length = path_length(points, question.start, question.target)
+        barred = (length > lengths[0] + 1e-6) & (length < lengths[10] + 1e-6)
+        return np.where(barred, INFEASIBLE + 1.0, cost)
+
+    monkeypatch.setattr(WaypointProblem, "cost", cost)
+    monkeypatch.setattr(WaypointProblem, "rank_placed", rank)
+    shortest_ones = int((path_length(points, question.start, question.target) <= lengths[0] + 1e-6).sum())
+    monkeypatch.setattr(seeds, "BATCH_ALONE", shortest_ones)
+    found = rule_seeds(question, 20)
+    best = lengths[lengths > lengths[10] + 1e-6][0]
+    assert found.ranks[0] <= 0.1 * best + 0.01
+
+
+def test_what_was_worked_out_about_tangents_serves_the_same_places_only() -> None:
+    question = problem(SINGLE)
+    rule_seeds(question, 20)
+    assert len(question.rays) == 1
+    close = question.relaxing(frozenset({"g1"}), longest=50_000.0)
+    assert close.rays is question.rays
+    assert close.relaxed == {"g1"}
+    assert close.longest == 50_000.0
+    assert not replace(question, centres=question.centres + 500.0).rays
+
+
+def test_where_turns_move_the_best_waypoint_off_the_rules_points_the_swarm_searches() -> None:
+    """A waypoint close to the sphere: the turn there needs room that the tangents do not leave."""
+    close = problem([(9000.0, 0.0)], target=(40_000.0, 0.0), relaxed=frozenset({"g1", "g2", "g4"}))
+    assert not rule_seeds(close, 20).proven
+    search = search_waypoint(close, np.random.default_rng(0))
+    assert search.iterations > 1
+    gap = search_gap(search)
+    assert gap is not None
+    assert gap <= 0.01
 
 
 def test_in_traffic_it_goes_on_for_the_rules_are_not_the_best_there() -> None:
@@ -93,17 +161,18 @@ def test_a_waypoint_is_kept_clear_of_an_intruder() -> None:
 def test_the_printed_seeds_lie_outside_on_both_sides() -> None:
     """Erratum E26: on the sphere of RS every seed would break g1."""
     question = problem(SINGLE, parameters=PAPER)
-    seeds = sphere_seeds(question, 10, np.random.default_rng(0))
-    distance = np.hypot(seeds[:, 0] - 9000.0, seeds[:, 1] - 400.0)
+    points = sphere_seeds(question, 10, np.random.default_rng(0))
+    distance = np.hypot(points[:, 0] - 9000.0, points[:, 1] - 400.0)
     assert (distance >= 2000.0).all()
-    assert (seeds[:, 1] > 400.0).sum() == 5
+    assert (points[:, 1] > 400.0).sum() == 5
 
 
 def test_rule_seeds_begin_with_a_feasible_point() -> None:
     question = problem(HILL)
-    seeds, _, evaluated = rule_seeds(question, 20)
-    assert question.rank(seeds[:1])[0] < INFEASIBLE
-    assert evaluated > 0
+    found = rule_seeds(question, 20)
+    assert found.feasible
+    assert question.rank(found.points[:1])[0] == found.ranks[0] < INFEASIBLE
+    assert found.tested > 0
 
 
 def test_a_wall_alone_is_flown_round() -> None:
@@ -121,6 +190,16 @@ def test_what_touches_a_long_leg_far_from_the_hill_bounds_the_search_too() -> No
     question = replace(problem([*hill, *others, *between], target=(28_484.0, 0.0)), avoided=np.arange(3))
     assert best_waypoint(question) is not None
     assert search_waypoint(question, np.random.default_rng(0)).found is not None
+
+
+def test_the_best_waypoint_on_a_leg_that_touches_something_far_from_the_hill_is_found() -> None:
+    """The best of the points about the hill alone is 3.4 km further."""
+    hill = [(1093.0, -1947.0), (1294.0, -794.0)]
+    others = [(9244.0, 3337.0), (10_262.0, 2855.0), (11_419.0, 4095.0), (7824.0, 400.0), (11_543.0, -5443.0)]
+    question = replace(problem([*hill, *others], target=(34_979.0, 0.0)), avoided=np.arange(2))
+    gap = search_gap(search_waypoint(question, np.random.default_rng(0)))
+    assert gap is not None
+    assert gap <= 0.001
 
 
 def test_length_to_optimum_compares_with_the_shortest_path() -> None:
