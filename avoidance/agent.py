@@ -26,6 +26,7 @@ from avoidance.second_thoughts import SecondThoughts, second_words
 from avoidance.sides import SMALL, Sides, end_words
 from avoidance.tracking import Tracker
 from avoidance.types import (
+    Bools,
     Decision,
     Detour,
     Hold,
@@ -171,7 +172,8 @@ class Agent:
             return replaced
         known = keep_what_can_be_kept(known, own, self._performance)
         slack = 0.0 if self._vigil.under_way else 1.0  # who circles would have to take the route up
-        blocked = first_blocked_leg(own, route, self._strict_with_news(known), self._performance, slack=slack)
+        news = self._news(known)
+        blocked = first_blocked_leg(own, route, known, self._performance, slack=slack, strict=news)
         uncut = route if blocked is None else replace(route, waypoints=route.waypoints[: blocked.leg])
         blocked = first_trap(own, uncut, known, self._performance, self._parameters) or blocked
         if blocked is None:
@@ -181,10 +183,9 @@ class Agent:
         again = self._choose_again(own, route, known) or self._round_the_end(own, route, known)
         return self._resume(own, route, known) if again is None else again
 
-    def _strict_with_news(self, known: Known) -> Known:
-        """No slack for what is new: it is for straying from a route that was found to be clear."""
-        news = ~np.isin(known.ids, self._flown_clear_of)
-        return replace(known, slack=np.where(news, 0.0, known.slack)) if news.any() else known
+    def _news(self, known: Known) -> Bools:
+        """What is new: there is no slack for it, which is for straying from a route found to be clear."""
+        return np.isin(known.ids, self._flown_clear_of, invert=True)
 
     def _avoid(self, own: Ownship, route: Route, known: Known, blocked: Blocked) -> Decision:
         if blocked.threat.moving:

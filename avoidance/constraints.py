@@ -6,9 +6,12 @@ import math
 
 import numpy as np
 
-from avoidance.flown import turn_angle
+from avoidance.flown import as_complex
 from avoidance.geometry import distances, segments_clearance, within_reach
 from avoidance.types import Complexes, Floats
+
+SHARPEST = 0.99 * math.pi
+"""Turns are counted as no sharper than this [rad]."""
 
 
 def safe_waypoint(points: Floats, centres: Floats, required: Floats) -> Floats:
@@ -146,8 +149,9 @@ def turning_angle(
     array, shape (n,)
         Excess, as an arc of one kilometre radius [m].
     """
-    incoming, outgoing, _, _ = _units(points, start, target)
-    return np.maximum(turn_angle(incoming, outgoing) - limit, 0.0) * 1000.0
+    here = as_complex(points)
+    turn = _turned(here - complex(*start), complex(*target) - here)
+    return np.asarray(np.maximum(turn - limit, 0.0) * 1000.0)
 
 
 def flyable_turn(
@@ -182,22 +186,19 @@ def flyable_turn(
     Replaces Eqs. (11)-(12) in the `default` preset. Differs from the paper: E16, a heading change is
     compared there with a bank angle.
     """
-    incoming, outgoing, first, second = _units(points, start, target)
-    need = turn_radius * np.tan(0.5 * np.minimum(turn_angle(incoming, outgoing), 0.99 * math.pi))
-    shortfall = need - np.minimum(first, second)
+    here = as_complex(points)
+    incoming, outgoing = here - complex(*start), complex(*target) - here
+    first = np.abs(incoming)
+    need = turn_radius * np.tan(0.5 * np.minimum(_turned(incoming, outgoing), SHARPEST))
+    shortfall = need - np.minimum(first, np.abs(outgoing))
     if course is not None:
-        ahead = np.array([math.cos(course), math.sin(course)])
-        begin = turn_radius * np.tan(0.5 * np.minimum(turn_angle(ahead, incoming), 0.99 * math.pi))
-        shortfall = np.maximum(shortfall, begin - first)
-    return np.maximum(shortfall, 0.0)
+        ahead = complex(math.cos(course), math.sin(course))
+        begin = turn_radius * np.tan(0.5 * np.minimum(_turned(ahead, incoming), SHARPEST))
+        np.maximum(shortfall, begin - first, out=shortfall)
+    return np.maximum(shortfall, 0.0, out=shortfall)
 
 
-def _units(
-    points: Floats, start: tuple[float, float], target: tuple[float, float]
-) -> tuple[Floats, Floats, Floats, Floats]:
-    """Directions on to and off each candidate, shape (n, 2), and the lengths of both legs, shape (n,) [m]."""
-    incoming = points.T - np.array(start)[:, None]
-    outgoing = np.array(target)[:, None] - points.T
-    first = np.maximum(np.hypot(incoming[0], incoming[1]), 1e-9)
-    second = np.maximum(np.hypot(outgoing[0], outgoing[1]), 1e-9)
-    return (incoming / first).T, (outgoing / second).T, first, second
+def _turned(before: Complexes | complex, after: Complexes) -> Floats:
+    """Unsigned angle from one direction to another, neither of unit length [rad]; 0 where one has none."""
+    product = np.conj(before) * after
+    return np.asarray(np.abs(np.arctan2(product.imag, product.real)))

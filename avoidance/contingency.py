@@ -14,7 +14,7 @@ import numpy as np
 
 from avoidance.flown import early_turn, late_turn
 from avoidance.geofence import FENCE, Walls
-from avoidance.geometry import segments_clearance
+from avoidance.geometry import segment_point_distance, segments_clearance
 from avoidance.known import Circles, Known
 from avoidance.orbits import SPACING, TIGHT, orbit_centres, orbit_reach, reach_across, roll_in, turning_room
 from avoidance.parameters import Parameters
@@ -165,8 +165,8 @@ def _narrow(
     length = float(np.hypot(*(end - begin)))
     reach = orbit_reach(performance) + 2.0 * performance.tracking_error
     widest = reach + 2.0 * TIGHT * performance.turn_radius + float(room.max())
-    near = np.flatnonzero(segments_clearance(leg[:1], leg[1:], circles.centres)[0] - circles.hard < widest)
-    fenced = bool(walls.clearance(leg[:1], leg[1:])[0] < widest)
+    near = np.flatnonzero(segment_point_distance(begin, end, circles.centres) - circles.hard < widest)
+    fenced = len(walls) > 0 and bool(walls.clearance(leg[:1], leg[1:])[0] < widest)
     if not (len(near) or fenced) or length < 1e-6:
         return np.empty(0), np.empty((0, 2), dtype=np.int64)
     unit = (end - begin) / length

@@ -117,9 +117,10 @@ def predict(tracks: Tracks, rows: Ints, time: float) -> None:
     """Extrapolate the tracks `rows` to a time [s]."""
     if not len(rows):
         return
-    step = time - tracks.time[rows]
+    chosen = _rows(tracks, rows)
+    step = time - tracks.time[chosen]
     long = step[:, None, None]
-    state, covariance = tracks.state[rows], tracks.covariance[rows]
+    state, covariance = tracks.state[chosen], tracks.covariance[chosen]
     state[:, :2] += step[:, None] * state[:, 2:]
     covariance[:, :2] += long * covariance[:, 2:]
     covariance[:, :, :2] += long * covariance[:, :, 2:]
@@ -130,14 +131,14 @@ def predict(tracks: Tracks, rows: Ints, time: float) -> None:
         covariance[:, axis, axis + 2] += both
         covariance[:, axis + 2, axis] += both
         covariance[:, axis + 2, axis + 2] += speed
-    tracks.state[rows], tracks.covariance[rows] = state, covariance
-    vertical, up = tracks.vertical[rows], tracks.vertical_covariance[rows]
+    tracks.state[chosen], tracks.covariance[chosen] = state, covariance
+    vertical, up = tracks.vertical[chosen], tracks.vertical_covariance[chosen]
     vertical[:, 0] += step * vertical[:, 1]
     up[:, 0] += 2.0 * step * up[:, 2] + square * up[:, 1] + WANDER_UP * cube / 3.0
     up[:, 2] += step * up[:, 1] + WANDER_UP * square / 2.0
     up[:, 1] += WANDER_UP * step
-    tracks.vertical[rows], tracks.vertical_covariance[rows] = vertical, up
-    tracks.time[rows] = time
+    tracks.vertical[chosen], tracks.vertical_covariance[chosen] = vertical, up
+    tracks.time[chosen] = time
 
 
 def correct(tracks: Tracks, rows: Ints, positions: Floats, noise: Floats, time: float) -> None:
@@ -147,11 +148,12 @@ def correct(tracks: Tracks, rows: Ints, positions: Floats, noise: Floats, time: 
     -----
     An innovation too large for straight flight widens the covariance first: a manoeuvre.
     """
-    innovation = positions[:, :2] - tracks.state[rows, :2]
-    covariance = tracks.covariance[rows]
+    chosen = _rows(tracks, rows)
+    innovation = positions[:, :2] - tracks.state[chosen, :2]
+    covariance = tracks.covariance[chosen]
     inverse = _inverse(covariance[:, :2, :2] + noise)
     surprise = (innovation[:, None] @ inverse @ innovation[:, :, None])[:, 0, 0]
-    turning = (surprise > SURPRISE) & tracks.moving[rows]
+    turning = (surprise > SURPRISE) & tracks.moving[chosen]
     if turning.any():
         covariance[turning, :2, :2] += noise[turning]  # it has left the old course some time ago
         covariance[turning, 2, 2] += TURNED**2
@@ -159,16 +161,22 @@ def correct(tracks: Tracks, rows: Ints, positions: Floats, noise: Floats, time: 
         inverse = _inverse(covariance[:, :2, :2] + noise)
         tracks.steady_since[rows[turning]] = time
     gain = covariance[:, :, :2] @ inverse
-    tracks.state[rows] += (gain @ innovation[:, :, None])[:, :, 0]
-    tracks.covariance[rows] = covariance - gain @ covariance[:, :2, :]
-    _correct_height(tracks, rows, positions[:, 2])
+    tracks.state[chosen] += (gain @ innovation[:, :, None])[:, :, 0]
+    tracks.covariance[chosen] = covariance - gain @ covariance[:, :2, :]
+    _correct_height(tracks, chosen, positions[:, 2])
     variance = np.maximum(noise[:, 0, 0], noise[:, 1, 1])
-    tracks.weight[rows] += 1.0 / variance
-    shift = positions - tracks.mean[rows]
-    tracks.mean[rows] += shift / (variance * tracks.weight[rows])[:, None]
+    tracks.weight[chosen] += 1.0 / variance
+    shift = positions - tracks.mean[chosen]
+    tracks.mean[chosen] += shift / (variance * tracks.weight[chosen])[:, None]
 
 
-def _correct_height(tracks: Tracks, rows: Ints, altitudes: Floats) -> None:
+def _rows(tracks: Tracks, rows: Ints) -> Ints | slice:
+    """Some rows; a slice where they are all there are, in order, for that is worked on in place."""
+    whole = len(rows) == len(tracks) and bool((rows[1:] > rows[:-1]).all())
+    return slice(None) if whole else rows
+
+
+def _correct_height(tracks: Tracks, rows: Ints | slice, altitudes: Floats) -> None:
     up = tracks.vertical_covariance[rows]
     total = up[:, 0] + ALTITUDE_SIGMA**2
     first, second = up[:, 0] / total, up[:, 2] / total

@@ -173,6 +173,8 @@ def _traffic(
     picture: Picture, moving: Bools, radii: Floats, own: Ownship, route: Route, parameters: Parameters
 ) -> dict[str, Any]:
     """What moves, where it is at the time of the vehicle's state, and the doubt about it."""
+    if not moving.any():
+        return {"intruder_ids": np.empty(0, dtype=np.int64), "intruders": Intruders()}
     flown = [own.altitude, *(waypoint.altitude for waypoint in route.waypoints[:3])]
     count = int(moving.sum())
     intruders = Intruders(

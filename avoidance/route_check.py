@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from avoidance.flown import flown_segments
 from avoidance.geofence import FENCE, Walls
 from avoidance.geometry import distances, point_distances, segments_clearance
 from avoidance.known import Known
-from avoidance.types import Floats, Ints, Ownship, Performance, Route, Threat
+from avoidance.types import Bools, Floats, Ints, Ownship, Performance, Route, Threat
 
 FENCE_SLACK = 10.0
 """A route is left alone until it comes this much nearer to the geofence than is to be kept [m]."""
@@ -55,7 +56,12 @@ def remaining_points(own: Ownship, route: Route, tracking_error: float, capture_
 
 
 def first_blocked_leg(
-    own: Ownship, route: Route, known: Known, performance: Performance, slack: float = 1.0
+    own: Ownship,
+    route: Route,
+    known: Known,
+    performance: Performance,
+    slack: float = 1.0,
+    strict: Bools | None = None,
 ) -> Blocked | None:
     """The first leg of the remaining route that something stationary cuts, or None.
 
@@ -72,6 +78,8 @@ def first_blocked_leg(
     slack : float
         Share of `known.slack` that a route may come nearer than `known.keep`: 1 for a route that is being
         flown, 0 for one that is to be taken up.
+    strict : array, shape (d,), optional
+        Obstacles of `known` to which a route may come no nearer than `known.keep` all the same.
 
     Returns
     -------
@@ -93,13 +101,17 @@ def first_blocked_leg(
         circles = known.circles(*band)
         mine = np.flatnonzero((legs[:, None] == owners).any(axis=1))
         distance = segments_clearance(starts[0, mine], ends[0, mine], circles.centres)
-        cut = distance < (circles.keep - slack * circles.slack)[None] + extra[0, mine, None]
-        if not cut.any():
+        spare = slack * circles.slack
+        if strict is not None:
+            spare[strict[circles.rows]] = 0.0
+        cut = distance < (circles.keep - spare) + extra[0, mine, None]
+        segments = cut.any(axis=1)
+        if not segments.any():
             continue
-        leg = int(legs[mine][cut.any(axis=1)].min())
+        leg = int(legs[mine][segments].min())
         if first is not None and first.leg <= leg:
             continue
-        on_leg = (legs[mine] == leg) & cut.any(axis=1)
+        on_leg = (legs[mine] == leg) & segments
         clearance = distance[on_leg].min(axis=0)
         blockers = np.flatnonzero(cut[on_leg].any(axis=0))
         corner = leg + inserted + 1
@@ -203,5 +215,4 @@ def _entry_distances(begin: Floats, end: Floats, centres: Floats, radii: Floats)
 
 
 def _length(points: Floats) -> float:
-    steps = np.diff(points, axis=0)
-    return float(np.hypot(steps[:, 0], steps[:, 1]).sum())
+    return sum((math.dist(a, b) for a, b in pairwise(points.tolist())), 0.0)

@@ -122,7 +122,7 @@ class Tracker:
         """Row of each contact that is exactly where a still obstacle of its identity stands; else -1."""
         tracks = self._tracks
         rows = np.full(len(scan.ids), -1, dtype=np.int64)
-        if not len(tracks) or not len(scan.ids):
+        if not len(scan.ids) or not (tracks.hits >= LASTING_HITS).any():
             return rows
         order = np.argsort(tracks.ids, kind="stable")
         place = np.minimum(np.searchsorted(tracks.ids[order], scan.ids), len(order) - 1)

@@ -63,3 +63,26 @@ def test_columns_are_kept_together() -> None:
     assert two.ids.tolist() == [1, 3]
     assert two.state[1].tolist() == [7.0, 8.0, 0.0, 0.0]
     assert two.radius[1] == 500.0
+
+
+def test_tracks_are_corrected_by_their_own_contacts_whatever_the_order() -> None:
+    """Contacts come in any order, and of some tracks only."""
+    rng = np.random.default_rng(3)
+    places = rng.uniform(-5000.0, 5000.0, (4, 3))
+    noise = np.diag([50.0**2, 150.0**2]) + rng.uniform(0.0, 500.0, (4, 1, 1)) * np.eye(2)
+
+    def corrected(rows: list[int]) -> filters.Tracks:
+        tracks = filters.begin(np.arange(4), places, np.full(4, np.nan), noise, 0.0)
+        chosen = np.array(rows)
+        filters.predict(tracks, chosen, 1.0)
+        filters.correct(tracks, chosen, (places + 40.0)[chosen], noise[chosen], 1.0)
+        return tracks
+
+    together, permuted = corrected([0, 1, 2, 3]), corrected([2, 0, 3, 1])
+    for row in range(4):
+        alone = corrected([row])
+        for tracks in (together, permuted):
+            assert np.allclose(tracks.state[row], alone.state[row], rtol=1e-12)
+            assert np.allclose(tracks.covariance[row], alone.covariance[row], rtol=1e-12)
+            assert np.allclose(tracks.vertical[row], alone.vertical[row], rtol=1e-12)
+            assert np.allclose(tracks.mean[row], alone.mean[row], rtol=1e-12)

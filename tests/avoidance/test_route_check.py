@@ -60,6 +60,22 @@ def test_the_inside_of_a_corner_counts() -> None:
     assert blocked is not None
 
 
+def test_slack_is_refused_to_some_also_where_others_are_above_the_flight() -> None:
+    """1,010 m beside the leg: within the slack of 10 m that a route has which is being flown."""
+    own, way = ownship(), route((40_000.0, 0.0))
+    around = known([(5000.0, 0.0), (9000.0, 1010.0)], own, way)
+    around = replace(around, altitudes=np.array([5000.0, 200.0]))
+    assert len(around.circles(200.0, 200.0).rows) == 1
+    strict = [
+        first_blocked_leg(own, way, around, PERFORMANCE, strict=np.array(rows))
+        for rows in ([False, False], [True, False], [False, True])
+    ]
+    assert strict[0] is None
+    assert strict[1] is None
+    assert strict[2] is not None
+    assert strict[2].threat.ids == (2,)
+
+
 def test_spheres_are_cut_at_flight_altitude() -> None:
     own, way = ownship(), route((40_000.0, 0.0))
     circle = known([(5000.0, 0.0)], own, way, altitude=815.0).circles(200.0, 200.0)  # 600 m above the band
