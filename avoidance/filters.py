@@ -195,7 +195,7 @@ def speed_sigma(tracks: Tracks, rows: Ints | slice = slice(None)) -> Floats:
     return np.sqrt(np.maximum(tracks.covariance[rows, 2, 2], tracks.covariance[rows, 3, 3]))
 
 
-def position_variance(tracks: Tracks, rows: Ints | slice = slice(None)) -> Floats:
+def position_variance(tracks: Tracks, rows: Ints | Bools | slice = slice(None)) -> Floats:
     """Variance of the position of each track, or of some, the larger of both axes, shape (n,) [m²]."""
     return np.maximum(tracks.covariance[rows, 0, 0], tracks.covariance[rows, 1, 1])
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from avoidance.flown import as_complex
+from avoidance.flown import as_complex, as_pairs
 from avoidance.problem import WaypointProblem
 from avoidance.types import Bools, Complexes, Floats, Ints
 
@@ -63,9 +63,9 @@ class Curves:
         ends = complex(*problem.start), complex(*problem.target)
         return cls(*ends, centres, radii, len(near), *problem.rays[0])
 
-    def corners(self) -> Complexes:
-        """Where rays from the start meet rays from the target."""
-        first, second = self.from_start[:, :, None], self.from_target[:, None]
+    def corners(self, pads: int = len(CORNER_PADS)) -> Complexes:
+        """Where rays from the start meet rays from the target, drawn with some of the pads."""
+        first, second = self.from_start[:pads, :, None], self.from_target[:pads, None]
         between = self.target - self.start
         sine = (np.conj(first) * second).imag
         with np.errstate(divide="ignore", invalid="ignore"):  # parallel rays meet nowhere
@@ -103,6 +103,10 @@ class Curves:
         foot = centres[first[good]] + along[good] * unit
         half = 1.0j * np.sqrt(square[good]) * unit
         return foot + half, foot - half
+
+    def meetings(self, pads: int = len(CORNER_PADS)) -> Floats:
+        """Where any of them meet, shape (m, 2) [m]."""
+        return as_pairs(np.concatenate([self.corners(pads), *self.pierced(), *self.crossings()]))
 
     def beside(self) -> Floats:
         """Points along each circle, and where it comes nearest to the straight leg, shape (m, 2) [m]."""

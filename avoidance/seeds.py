@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from avoidance.cost import path_length
-from avoidance.flown import as_pairs
 from avoidance.geometry import segment_point_distance
 from avoidance.problem import INFEASIBLE, WaypointProblem, straight_cost
 from avoidance.refine import refined
@@ -127,18 +126,25 @@ def rule_seeds(problem: WaypointProblem, count: int) -> Seeds:
     Intersections of tangents with tangents, tangents with circles, circles with circles, and points along
     the circles. Candidates are taken in order of cost, so the first feasible one is the best of them. No way
     is cheaper than the cheapest of those that the straight legs allow: if that one can be flown, and no
-    obstacle's curves were left out, it is the best there is. Else turns have moved the best waypoint off
-    these points, or risk may have, or curves left out would lead to it: it is refined. Where no candidate is
-    feasible (the turn on to the first leg can ask for more room than the curves give), or only a fence is in
-    the way, points in a fan are tried.
+    obstacle's curves were left out, it is the best there is; so those where curves meet are tried alone at
+    first. Else turns have moved the best waypoint off these points, or risk may have, or curves left out
+    would lead to it: all are tried, and the best is refined. Where no candidate is feasible (the turn on to
+    the first leg can ask for more room than the curves give), or only a fence is in the way, points in a fan
+    are tried.
     """
     fenced = not (len(problem.avoided) or len(problem.intruders))
+    complete = not fenced and len(problem.centres) + len(problem.avoided) <= MOST_CIRCLES
+    if complete and problem.alone and "g1" not in problem.relaxed and math.isinf(problem.longest):
+        # so far from the circles every turn fits
+        meetings = Curves.of(problem, _near(problem)).meetings(pads=1)
+        found = _best_first(problem, meetings, count, complete)
+        if found.proven:
+            return found
     candidates = _fan(problem) if fenced else _candidates(problem)
     if math.isfinite(problem.longest):
         candidates = candidates[path_length(candidates, problem.start, problem.target) < problem.longest]
     if not len(candidates):
         return Seeds(np.array([problem.start]), np.array([np.nan]), 0)
-    complete = not fenced and len(problem.centres) + len(problem.avoided) <= MOST_CIRCLES
     found = _best_first(problem, candidates, count, complete)
     rounds = ROUNDS if problem.alone else ROUNDS_IN_TRAFFIC
     if not found.feasible and math.isinf(problem.longest) and not fenced:
@@ -157,8 +163,7 @@ def _candidates(problem: WaypointProblem) -> Floats:
     candidates = [] if problem.alone else [traffic_seeds(problem)]
     if len(problem.avoided):
         curves = Curves.of(problem, _near(problem))
-        found = np.concatenate([curves.corners(), *curves.pierced(), *curves.crossings()])
-        candidates += [as_pairs(found), curves.beside()]
+        candidates += [curves.meetings(), curves.beside()]
     return np.concatenate(candidates)
 
 

@@ -215,6 +215,8 @@ class Tracker:
 
     def _forget(self, time: float) -> None:
         tracks = self._tracks
+        if not ((tracks.misses >= TENTATIVE_MISSES).any() or tracks.moving.any()):
+            return
         fleeting = (tracks.hits < LASTING_HITS) & (
             tracks.misses >= np.maximum(TENTATIVE_MISSES, 2 * tracks.hits)
         )
@@ -229,15 +231,18 @@ class Tracker:
     def _publish(self, time: float) -> Picture:
         tracks, before, moving = self._tracks, self._picture, self._tracks.moving
         confirmed = tracks.hits >= CONFIRMING_HITS
-        self._settled = not moving.any() and bool((tracks.hits >= LASTING_HITS).all())
-        positions = tracks.mean.copy()
-        positions[moving, :2], positions[moving, 2] = tracks.state[moving, :2], tracks.vertical[moving, 0]
-        sigma = np.sqrt(np.where(moving, filters.position_variance(tracks), 1.0 / tracks.weight))
-        sigma = np.where(sigma <= 2.0 * FLOOR, 0.0, sigma)
-        rate = tracks.vertical[:, 1]
-        climbs = moving & (
-            np.abs(rate) > np.maximum(CLIMB_RATE, 4.0 * np.sqrt(tracks.vertical_covariance[:, 1]))
-        )
+        traffic = bool(moving.any())
+        self._settled = not traffic and bool((tracks.hits >= LASTING_HITS).all())
+        positions, variance = tracks.mean.copy(), 1.0 / tracks.weight
+        velocities, climbs = np.zeros((len(tracks), 2)), np.zeros(len(tracks))
+        if traffic:
+            positions[moving, :2], positions[moving, 2] = tracks.state[moving, :2], tracks.vertical[moving, 0]
+            variance[moving] = filters.position_variance(tracks, moving)
+            velocities[moving] = tracks.state[moving, 2:]
+            rate, doubt = tracks.vertical[moving, 1], np.sqrt(tracks.vertical_covariance[moving, 1])
+            climbs[moving] = np.where(np.abs(rate) > np.maximum(CLIMB_RATE, 4.0 * doubt), rate, 0.0)
+        sigma = np.sqrt(variance)
+        sigma[sigma <= 2.0 * FLOOR] = 0.0
         if before is not None and _same_still(before, tracks.ids, positions, moving, confirmed):
             positions[~moving] = before.positions[~moving]
         else:
@@ -245,8 +250,8 @@ class Tracker:
         self._picture = Picture(
             ids=tracks.ids.copy(),
             positions=positions,
-            velocities=np.where(moving[:, None], tracks.state[:, 2:], 0.0),
-            climbs=np.where(climbs, rate, 0.0),
+            velocities=velocities,
+            climbs=climbs,
             radii=tracks.radius.copy(),
             sigma=sigma,
             speed_sigma=filters.speed_sigma(tracks),
