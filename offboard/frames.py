@@ -109,7 +109,7 @@ class MapFrame:
         Returns
         -------
         latitude_deg, longitude_deg : float or array of the same shape
-            Positions [deg], longitude from -180 up to 180.
+            Positions [deg], longitude from -180 up to, but not including, 180.
 
         Notes
         -----
@@ -152,11 +152,12 @@ def _direct(home_latitude: float, home_longitude: float, north: float, east: flo
     """Latitude and longitude [deg] at the end of the geodesic from home [deg] to a map point [m]."""
     distance = math.hypot(north, east)
     if distance == 0.0:
-        return home_latitude, home_longitude
+        return home_latitude, home_longitude if home_longitude < 180.0 else -180.0
     latitude, longitude = _along_geodesic(
         math.radians(home_latitude), math.radians(home_longitude), distance, math.atan2(east, north)
     )
-    return math.degrees(latitude), (math.degrees(longitude) + 180.0) % 360.0 - 180.0
+    around = (math.degrees(longitude) + 180.0) % 360.0  # 360 itself, of what is hardly negative
+    return math.degrees(latitude), around - 180.0 if around < 360.0 else -180.0
 
 
 def _geodesic(

@@ -21,6 +21,8 @@ DISTANCE = st.floats(0.0, 400_000.0)
 @example(latitude=14.39, longitude=76.60, distance=400_000.0, azimuth=1e-9)
 @example(latitude=14.39, longitude=76.60, distance=350_000.0, azimuth=math.pi - 1e-12)
 @example(latitude=0.0, longitude=179.99, distance=400_000.0, azimuth=0.5 * math.pi)
+@example(latitude=0.0, longitude=180.0, distance=0.0, azimuth=0.0)
+@example(latitude=0.0, longitude=-180.0, distance=1e-12, azimuth=1.5 * math.pi)
 def test_round_trip_closes_within_a_millimetre(
     latitude: float, longitude: float, distance: float, azimuth: float
 ) -> None:
