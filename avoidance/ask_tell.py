@@ -79,8 +79,7 @@ class AskTell(ABC):
         if change > 0.0:
             self._best, self._best_cost = self._points[leader].copy(), float(costs[leader])
         self._unchanged = self._unchanged + 1 if change < self._settings.stop_change else 0
-        if self._settings.iterations:
-            self._points = self._move(costs, change)
+        self._points = self._move(costs, change)
         self.iteration += 1
 
     @abstractmethod

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from avoidance.flown import as_complex
+from avoidance.flown import as_complex, turn_angle
 from avoidance.geometry import distances, segments_clearance, within_reach
 from avoidance.types import Complexes, Floats
 
@@ -150,7 +150,7 @@ def turning_angle(
         Excess, as an arc of one kilometre radius [m].
     """
     here = as_complex(points)
-    turn = _turned(here - complex(*start), complex(*target) - here)
+    turn = turn_angle(here - complex(*start), complex(*target) - here)
     return np.asarray(np.maximum(turn - limit, 0.0) * 1000.0)
 
 
@@ -189,16 +189,10 @@ def flyable_turn(
     here = as_complex(points)
     incoming, outgoing = here - complex(*start), complex(*target) - here
     first = np.abs(incoming)
-    need = turn_radius * np.tan(0.5 * np.minimum(_turned(incoming, outgoing), SHARPEST))
+    need = turn_radius * np.tan(0.5 * np.minimum(turn_angle(incoming, outgoing), SHARPEST))
     shortfall = need - np.minimum(first, np.abs(outgoing))
     if course is not None:
         ahead = complex(math.cos(course), math.sin(course))
-        begin = turn_radius * np.tan(0.5 * np.minimum(_turned(ahead, incoming), SHARPEST))
+        begin = turn_radius * np.tan(0.5 * np.minimum(turn_angle(ahead, incoming), SHARPEST))
         np.maximum(shortfall, begin - first, out=shortfall)
     return np.maximum(shortfall, 0.0, out=shortfall)
-
-
-def _turned(before: Complexes | complex, after: Complexes) -> Floats:
-    """Unsigned angle from one direction to another, neither of unit length [rad]; 0 where one has none."""
-    product = np.conj(before) * after
-    return np.asarray(np.abs(np.arctan2(product.imag, product.real)))

@@ -174,12 +174,10 @@ def as_pairs(values: Complexes) -> Floats:
     return np.ascontiguousarray(values)[..., None].view(np.float64)
 
 
-def turn_angle(first: Floats, second: Floats) -> Floats:
-    """Unsigned angle between unit vectors of shape (..., 2) [rad]."""
-    dot = first[..., 0] * second[..., 0] + first[..., 1] * second[..., 1]
-    cross = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
-    angle: Floats = np.abs(np.arctan2(cross, dot))
-    return angle
+def turn_angle(before: Complexes | complex, after: Complexes) -> Floats:
+    """Unsigned angle between directions of any length, same shape [rad]; 0 where one has none."""
+    product = np.conj(before) * after
+    return np.asarray(np.abs(np.arctan2(product.imag, product.real)))
 
 
 def _turn(

@@ -88,9 +88,7 @@ def search_waypoint(problem: WaypointProblem, rng: np.random.Generator) -> Searc
         seeds, ranks, evaluations = found.points, found.ranks, found.tested
         searching = not found.proven and (found.feasible or math.isinf(problem.longest))
         best_known = found.feasible and bool(len(problem.avoided)) and problem.alone
-        if problem.alone and not searching:
-            settings = replace(settings, iterations=0)
-        elif best_known:
+        if best_known:
             settings = replace(settings, stop_iterations=1)
         if best_known or not searching:
             ranks = np.where(np.isnan(ranks), OUT_OF_PLACE, ranks)

@@ -219,7 +219,7 @@ def _best_first(problem: WaypointProblem, candidates: Floats, count: int, comple
         keys.append(key)
         ranks.append(np.full(len(points), np.nan) if rank is None else rank)
 
-    best = shortest = cheapest = math.inf
+    best = cheapest = riskless = math.inf
     begin, tested = 0, 0
     while begin < len(order):
         end = begin + size
@@ -227,16 +227,15 @@ def _best_first(problem: WaypointProblem, candidates: Floats, count: int, comple
             if best <= least_cost[begin]:
                 break
             end = min(end, int(np.searchsorted(least_cost, best))) if alone else end
-        batch = candidates[order[begin:end]]
+        batch, floor = candidates[order[begin:end]], least_cost[begin:end]
         short = problem.waypoint_violation(batch)
         good = short <= 0.0
         take(batch[~good], INFEASIBLE + NO_WAYPOINT + short[~good])
-        batch = batch[good]
+        batch, floor = batch[good], floor[good]
         short = problem.leg_violation(batch)
         good = short <= 0.0
         take(batch[~good], INFEASIBLE + NO_LEG + short[~good])
-        if math.isinf(shortest) and good.any():
-            shortest = float(path_length(batch[good][:1], problem.start, problem.target)[0])
+        riskless = min(riskless, float(floor[good].min(initial=math.inf)))
         batch, cost = _by_cost(problem, batch[good])
         cheapest = min(cheapest, float(cost[:1].min(initial=math.inf)))
         for first, last in _chunks(len(batch), chunk):
@@ -251,9 +250,8 @@ def _best_first(problem: WaypointProblem, candidates: Floats, count: int, comple
         begin, size = begin + size, 2 * size if alone else size
     points, key, rank = np.concatenate(chosen), np.concatenate(keys), np.concatenate(ranks)
     first_ones = np.argsort(key, kind="stable")[:count]
-    weight = problem.parameters.path_weight
-    at_stake = min(RISKY * (best - straight_cost(problem)), AT_STAKE * weight)
-    proven = complete and alone and best == cheapest and best - weight * shortest <= at_stake
+    at_stake = min(RISKY * (best - straight_cost(problem)), AT_STAKE * problem.parameters.path_weight)
+    proven = complete and alone and best == cheapest and best - riskless <= at_stake
     return Seeds(points[first_ones], rank[first_ones], tested, proven)
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from avoidance.flown import turn_angle
+from avoidance.flown import as_complex, turn_angle
 from avoidance.geometry import segments_clearance
 from avoidance.types import Floats
 from scenarios.paper.published import published
@@ -105,15 +105,10 @@ def _new_waypoints(points: Floats, centres: Floats, known: Floats) -> list[NewWa
         if np.hypot(*(known - point).T).min() <= SAME:
             continue
         away = float(np.hypot(*(centres - point).T).min())
-        incoming, outgoing = _unit(point - before), _unit(after - point)
-        turn = float(turn_angle(incoming[None], outgoing[None])[0])
+        turn = float(turn_angle(as_complex(point - before), as_complex(after - point)))
         found.append(NewWaypoint((float(point[0]), float(point[1])), away, turn))
     return found
 
 
 def _places(rows: Sequence[Sequence[float]]) -> Floats:
     return np.array([row[:2] for row in rows], dtype=np.float64)
-
-
-def _unit(vector: Floats) -> Floats:
-    return np.asarray(vector / np.hypot(*vector))

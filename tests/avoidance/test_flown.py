@@ -75,8 +75,10 @@ def test_a_turn_from_the_present_course_runs_on_first() -> None:
 
 
 def test_turn_angle_is_unsigned() -> None:
-    north, west = np.array([[1.0, 0.0]]), np.array([[0.0, -1.0]])
+    north, west = np.array([3.0 + 0.0j]), np.array([-0.5j])
     assert turn_angle(north, west)[0] == pytest.approx(math.pi / 2)
+    assert turn_angle(west, north)[0] == pytest.approx(math.pi / 2)
+    assert turn_angle(north, np.zeros(1, dtype=np.complex128))[0] == 0.0
 
 
 def test_a_turn_that_has_begun_is_not_put_off() -> None:
